@@ -15,6 +15,10 @@ class UserError(GreyboxError):
     """The user's input is at fault: a file, a field, an option or an argument. The command line exits with 2."""
 
 
+class NothingToDo(UserError):
+    """Nothing is at fault, and there is nothing to do: what was asked for is decided. The command line exits with 4, without "error:"."""
+
+
 class Kind(str):
     """Words for a thing that a message does not show itself, such as "an object of type list"."""
 

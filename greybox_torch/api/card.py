@@ -18,6 +18,7 @@ from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
+from greybox_torch.keywords import names_checked
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
 
@@ -107,6 +108,7 @@ class CardResult(DraftedFile):
         return [[d.name, d.unit, d.column or "", d.remark] for d in self.draft.channels]
 
 
+@names_checked
 def card(
     files: str | PathLike[str] | Iterable[str | PathLike[str]],
     model: GreyBoxModel | str | None = None,

@@ -20,6 +20,7 @@ from greybox_torch.api.simulate import SimulationResult
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.evaluation import evaluated
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report import notebook
 from greybox_torch.restored import card_of, load, load_beside
@@ -92,6 +93,7 @@ class ComparisonResult(Result):
         return [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
 
 
+@names_checked
 def compare(
     data: DataSet,
     models: Mapping[str, GreyBoxModel | str | PathLike[str] | Any],

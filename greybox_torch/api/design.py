@@ -20,7 +20,7 @@ from greybox_torch.api.nothing_open import group_in_question
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.experiment_design.aim import Aim, Trial
-from greybox_torch.experiment_design.approach import begun_there
+from greybox_torch.experiment_design.approach import begun_at, begun_there
 from greybox_torch.experiment_design.beginning import Beginning, beginning_of
 from greybox_torch.experiment_design.contender import Contender, contender
 from greybox_torch.experiment_design.controller import Loop
@@ -29,7 +29,8 @@ from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import judged_at_estimates
 from greybox_torch.experiment_design.limits import Limits, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
-from greybox_torch.experiment_design.simulated import input_records, predictions, within
+from greybox_torch.experiment_design.simulated import predictions, within
+from greybox_torch.keywords import names_checked
 from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.name_lists import listed
 
@@ -37,6 +38,7 @@ RANDOM = 5
 """Random multisines of the same power that the best input (or set point) is compared with."""
 
 
+@names_checked
 @on_one_thread
 def design(
     found: DiagnosisResult | str | Path,
@@ -85,7 +87,7 @@ def design(
     progress("reading what the recordings say of each hypothesis")
     step = held.data.recordings[0].sample_time
     aim, begins = _begun(_aim(held, precision, loops_for(entries, plain, own, step)), own)
-    own = replace(own, begin=_where_outputs_stand(aim.contenders[0], own, step))
+    own = replace(own, begin=begun_at(aim.contenders[0], own, step))
     time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
     best = search(aim, own, time, check_seed(seed), progress)
     if not best:
@@ -134,18 +136,6 @@ def _begun(aim: Aim, limits: Limits) -> tuple[Aim, Beginning]:
 
 def _told(begins: Beginning) -> str:
     return f"the start of {begins.like}" + (", but for the states that are asked for" if begins.given else "")
-
-
-def _where_outputs_stand(one: Contender, limits: Limits, step: float) -> dict[str, float]:
-    """By input that a loop drives, the output that follows the set point, as the recording begins."""
-    if not one.loops:
-        return {}
-    inputs = np.array([[own.middle] for own in limits.inputs.values()])
-    for loop in one.loops:
-        inputs[loop.driven] = loop.rest
-    records = input_records(one, [np.repeat(inputs, 2, axis=1)], step * np.arange(2))
-    y, names = one.predicted(records, tangents=False).y[0, 0], list(limits.inputs)
-    return {names[loop.driven]: float(y[loop.measured]) for loop in one.loops}
 
 
 def _contender(kept: Kept, held: Hypotheses, loops: Sequence[Loop] = ()) -> Contender:

@@ -69,11 +69,27 @@ def _beginning(found: DesignResult) -> Iterator[str]:
         yield f"Begin with {began}: {', '.join(found.limits.start)} as asked for, all else as {found.begins_like} began."
     else:
         yield f"Begin as {found.begins_like} began: {began}."
+    yield from _within_rates(found)
     if found.moving:
         zero = ", ".join(f"{name} = 0" for name in found.moving)
         yield (
             f"That is in motion ({', '.join(found.moving)}). To begin at rest, give the start under [limits] on the card, "
             f"start = {{ {zero} }} (in Python limits=); a position at which the machine rests can be given there as well."
+        )
+
+
+def _within_rates(found: DesignResult) -> Iterator[str]:
+    """Where inputs begin whose rate is limited."""
+    units = {name: channel.unit for name, channel in found.data.channels.items()}
+    at = [
+        in_unit(f"{name} = {value:.4g}", units.get(name, ""))
+        for name, value in found.limits.begin.items()
+        if name not in found.follows
+    ]
+    if at:
+        yield (
+            f"{INPUT} begins with {listed(at)}, as that recording did or as near as the limits allow, and changes from there at the "
+            "limited rate."
         )
 
 

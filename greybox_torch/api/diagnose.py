@@ -29,6 +29,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, se
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
@@ -40,6 +41,7 @@ LIKE_A_SLIP = ("unknown", "input_gain", "sensor_gain")
 """What a channel that is exchanged, turned or of another scale looks like, at its actuator or sensor."""
 
 
+@names_checked
 def diagnose(
     model: GreyBoxModel | Any,
     data: DataSet,

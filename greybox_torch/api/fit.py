@@ -29,12 +29,14 @@ from greybox_torch.estimate.precision import settings_for
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.profile import SETTINGS, Profile, check_profiled, profile
 from greybox_torch.estimate.simulators import fine_enough, simulator_for
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 MOST_STARTS = 4096
 
 
+@names_checked
 def fit(
     model: GreyBoxModel | Any,
     data: DataSet,

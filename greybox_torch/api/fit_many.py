@@ -31,6 +31,7 @@ from greybox_torch.estimate.together.comparison import compare_together
 from greybox_torch.estimate.together.fit import fit_together, undetermined_at_start
 from greybox_torch.estimate.together.free_runs import together
 from greybox_torch.estimate.together.substeps import with_fine_steps
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
@@ -49,6 +50,7 @@ class _Machine:
     problem: Problem
 
 
+@names_checked
 def fit_many(
     model: GreyBoxModel | Any,
     data: Iterable[DataSet],

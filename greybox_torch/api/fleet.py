@@ -24,6 +24,7 @@ from greybox_torch.fleets.killed import killed_row
 from greybox_torch.fleets.progress import Progress
 from greybox_torch.fleets.row import Row
 from greybox_torch.fleets.schedule import Killed, share_out
+from greybox_torch.keywords import names_checked
 from greybox_torch.systems import load_model, model_reference
 
 MOST_WORKERS = 4096
@@ -31,6 +32,7 @@ MOST_WORKERS = 4096
 Place = str | PathLike[str]
 
 
+@names_checked
 def fleet(
     where: Place | Iterable[Place],
     out: Place,

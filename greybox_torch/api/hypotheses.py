@@ -36,7 +36,8 @@ Starts = Mapping[str, Mapping[str, float]]
 @dataclass(frozen=True)
 class Kept:
     """A hypothesis: its ``name``, its ``probability`` among its rivals, a ``model`` that holds its values, start states by recording and
-    state, and what the verdict gives it: less where much is left beside it, or where the search was stopped; None for a rival.
+    state, and what the verdict gives it: less where much is left beside it, or where the search was stopped; None for a rival. ``limited``:
+    why it is less, clauses.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Kept:
     model: GreyBoxModel
     starts: Starts
     in_verdict: float | None = None
+    limited: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -65,7 +67,7 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
     found: dict[str, list[Kept]] = {}
     for r in result.found.rivals:
         held = copy_holding(r.model, r.values, starts_free=True)
-        one = Kept(spoken_at(r.mechanism, r.port), r.probability, held, r.initial, _in_verdict(result, r))
+        one = Kept(spoken_at(r.mechanism, r.port), r.probability, held, r.initial, *_in_verdict(result, r))
         found.setdefault(r.finding, []).append(one)
     recommended = Kept("the recommended model", 1.0, result.model, result.initial)
     groups = tuple(tuple(group) for group in found.values())
@@ -74,9 +76,11 @@ def hypotheses_of(result: DiagnosisResult) -> Hypotheses:
     return Hypotheses(result.data, model_reference(result.given), recommended, groups, result.verdict.complete, left)
 
 
-def _in_verdict(result: DiagnosisResult, rival: Rival) -> float | None:
+def _in_verdict(result: DiagnosisResult, rival: Rival) -> tuple[float | None, tuple[str, ...]]:
+    """What the verdict gives a finding, and why no more; None and nothing for a rival."""
     own = f"{rival.port}.{rival.mechanism}" == rival.finding
-    return next((e.probability for e in result.effects if own and e.prefix == rival.finding), None)
+    told = ((e.probability, e.limited) for e in result.effects if own and e.prefix == rival.finding)
+    return next(told, (None, ()))
 
 
 def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoint) -> dict[Path, str | bytes]:
@@ -96,7 +100,9 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
         )
         files |= checkpoint_files(folder / RIVALS / name, own)
         entry = {"checkpoint": f"{RIVALS}/{name}", "port": rival.port, "mechanism": rival.mechanism}
-        entry |= {"probability": rival.probability, "initial": rival.initial, "in_verdict": _in_verdict(result, rival)}
+        in_verdict, limited = _in_verdict(result, rival)
+        entry |= {"probability": rival.probability, "initial": rival.initial, "in_verdict": in_verdict}
+        entry |= {"limited": list(limited)} if limited else {}
         findings.setdefault(rival.finding, []).append(entry)
     path = result.data.path
     content = {
@@ -179,7 +185,8 @@ def _kept(folder: Path, entry: Mapping[str, Any], own: GreyBoxModel, data: DataS
     model, _ = load_beside(folder / str(entry["checkpoint"]), own, data)
     name, in_verdict = spoken_at(str(entry["mechanism"]), str(entry["port"])), entry.get("in_verdict")
     in_verdict = None if in_verdict is None else float(in_verdict)
-    return Kept(name, float(entry["probability"]), model, _starts(entry["initial"]), in_verdict)
+    limited = tuple(str(clause) for clause in entry.get("limited", ()))
+    return Kept(name, float(entry["probability"]), model, _starts(entry["initial"]), in_verdict, limited)
 
 
 def _starts(content: Mapping[str, Mapping[str, Any]]) -> Starts:

@@ -16,6 +16,7 @@ from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
+from greybox_torch.keywords import names_checked
 from greybox_torch.name_lists import brief
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
@@ -147,6 +148,7 @@ class InspectionResult(Result):
         return [f"Channels without a unit are taken in the model's units: {', '.join(taken)}."] if taken else []
 
 
+@names_checked
 def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> InspectionResult:
     """Look at the channels of a data set, and check it against a model.
 

@@ -13,6 +13,7 @@ from rich.text import Text
 from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.drafting.pattern import PATTERNS, class_name, model_text
 from greybox_torch.errors import ArgumentError, Kind
+from greybox_torch.keywords import names_checked
 from greybox_torch.report import notebook
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class NewModel(DraftedFile):
         return notebook.page(repr(self)[1:-1], notebook.verbatim(self.text))
 
 
+@names_checked
 def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = None) -> NewModel:
     """Draft a commented model file to change into one's own; :meth:`NewModel.save` writes it.
 

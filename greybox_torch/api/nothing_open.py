@@ -8,8 +8,9 @@ from greybox_torch.api.expected import NOTHING, WANTED, decided
 from greybox_torch.api.hypotheses import Hypotheses, Kept, left_out_told, to_tell_apart
 from greybox_torch.api.inseparable import inseparable, told_one_effect
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION
-from greybox_torch.errors import UserError
+from greybox_torch.errors import NothingToDo
 
+_NOTHING = "nothing to design"
 _OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
 
 
@@ -17,24 +18,25 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
     """The hypotheses that a recording is to tell apart.
 
     Raises:
-        UserError: there are no rivals, one hypothesis is decided, or all are one effect in the model.
+        NothingToDo: there are no rivals, one hypothesis is decided, or all are one effect in the model.
     """
     group, left_out = to_tell_apart(held)
     told = "".join(f". {sentence.rstrip('.')}" for sentence in left_out_told(left_out))
     if len(group) < 2:
-        raise UserError(
-            f"the diagnosis left no rivals to tell apart{_all_the_same(held)}; expected a finding with named alternatives, "
+        raise NothingToDo(
+            f"{_NOTHING}: the diagnosis left no rivals to tell apart{_all_the_same(held)}; expected a finding with named alternatives, "
             f"{_OR_A_PARAMETER}{told}"
         )
     if decided([kept.probability for kept in group]):
         best = max(group, key=lambda kept: kept.probability)
-        raise UserError(
-            f"between the named hypotheses all is already decided: {_decided(best, held.complete)}"
+        raise NothingToDo(
+            f"{_NOTHING}: {_decided(best, held.complete)}"
             f"{_all_the_same(held)}; expected a finding that is open, {_OR_A_PARAMETER}{told}"
         )
     if same := inseparable(group):
-        raise UserError(
-            f"{told_one_effect(same)}{_all_the_same(held)}; expected a finding that a recording can decide, {_OR_A_PARAMETER}{told}"
+        raise NothingToDo(
+            f"{_NOTHING}: {told_one_effect(same)}{_all_the_same(held)}; expected a finding that a recording can decide, "
+            f"{_OR_A_PARAMETER}{told}"
         )
     return group
 
@@ -54,10 +56,13 @@ def _decided(best: Kept, complete: bool) -> str:
     """How sure the hypothesis is that has no rival, and why the verdict is less sure of it where that is so."""
     alone = f"each rival less than {NOTHING:g}"
     if best.in_verdict is None or best.in_verdict >= WANTED:
-        return f"{best.name} has a probability of {best.probability:.2f}, {alone}"
+        return f"between the named hypotheses all is already decided: {best.name} has a probability of {best.probability:.2f}, {alone}"
     why = (
-        "it is no surer as more than noise is left beside it, which no recording that tells rivals apart changes"
+        "; ".join(best.limited) or "see its evidence in the report"
         if complete
-        else "it is no surer as the search was stopped before all was tried: diagnose once more without a time limit"
+        else "the search was stopped before all was tried: diagnose once more without a time limit"
     )
-    return f"{best.name} has a probability of {best.in_verdict:.2f}, {alone}; {why}"
+    return (
+        f"of the named hypotheses the recordings leave {best.name} alone ({alone}), and no recording has to tell it from them; that its "
+        f"probability is {best.in_verdict:.2f} has another reason: {why}"
+    )

@@ -16,6 +16,7 @@ from greybox_torch.api.simulate import START, simulate
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.evaluation import Evaluation
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.report import notebook
@@ -124,6 +125,7 @@ class ResidualResult(Result):
         return [*columns, "white"], [[*row.values(), w] for row, w in zip(self.scores, white, strict=True)]
 
 
+@names_checked
 def residuals(
     model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> ResidualResult:

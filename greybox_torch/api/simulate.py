@@ -22,6 +22,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import AUGMENTED, START
 from greybox_torch.evaluation import Evaluation, evaluated
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
 from greybox_torch.report import notebook
@@ -166,6 +167,7 @@ def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
     return float(np.corrcoef(measured[known], simulated[known])[0, 1])
 
 
+@names_checked
 def simulate(
     model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> SimulationResult:

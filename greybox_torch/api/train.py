@@ -25,6 +25,7 @@ from greybox_torch.api.train_scores import HYBRID, free_runs_of
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Explanation, Report, Trained, TrainingSettings, train_hybrid
 from greybox_torch.training import explain as explain_network
@@ -32,6 +33,7 @@ from greybox_torch.training import explain as explain_network
 MOST_MEMBERS = 1000
 
 
+@names_checked
 def train(
     model: GreyBoxModel | Any,
     data: DataSet,

@@ -15,11 +15,11 @@ import typer
 from typer.core import TyperGroup
 
 from greybox_torch.commands.options import json_alone
-from greybox_torch.errors import ArgumentError, NumericalError, UserError
+from greybox_torch.errors import ArgumentError, NothingToDo, NumericalError, UserError
 
 
 class Commands(TyperGroup):
-    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 130 interrupted.
+    """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 4 there is nothing to do, 130 interrupted.
 
     Files are written by `greybox_torch.files`, with messages of its own, so an error of the system here is one of standard output.
     """
@@ -33,6 +33,8 @@ class Commands(TyperGroup):
             return done
         except ArgumentError as error:
             raise _stop(f"error: {error.for_option()}", 2) from None
+        except NothingToDo as told:
+            raise _stop(str(told), 4) from None
         except UserError as error:
             raise _stop(f"error: {error}", 2) from None
         except NumericalError as error:

@@ -4,20 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.estimate.notes import told_at_bound, with_value
 from greybox_torch.name_lists import listed
 
+Value = tuple[float, float | None] | None
+"""An estimate and its standard deviation."""
 
-def own_at_bounds(estimates: Sequence[tuple[str, bool, bool]], effects: bool) -> tuple[str, ...]:
+
+def own_at_bounds(
+    estimates: Sequence[tuple[str, str, Value, Value, tuple[bool, bool]]], effects: bool
+) -> tuple[str, ...]:
     """A sentence on those that are at a bound in the model as it stands, re-estimated, or in the one with effects; none elsewhere.
 
     Args:
-        estimates: the name of each, and whether it is at a bound in the one and in the other.
+        estimates: the name of each, its unit, its value in the one and in the other, and whether these are at a bound.
         effects: whether there is a model with effects.
     """
-    if not effects:
-        names = [name for name, refit, _ in estimates if refit]
-    else:
-        where = {(True, False): " (without the effects)", (False, True): " (with the effects)", (True, True): ""}
-        names = [name + where[refit, augmented] for name, refit, augmented in estimates if refit or augmented]
-    return (f"{told_at_bound(listed(names))}.",) if names else ()
+    told = []
+    for name, unit, *values, at_bound in estimates:
+        refit, augmented = (
+            with_value(name, v[0], unit) if v and at else "" for v, at in zip(values, at_bound, strict=True)
+        )
+        if not effects or refit == augmented:
+            told.append(refit)
+        else:
+            told.append(refit and f"{refit} (without the effects)")
+            told.append(augmented and f"{augmented} (with the effects)")
+    named = listed([one for one in told if one])
+    return (f"{told_at_bound(named)}.",) if named else ()

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.determined import listed_with_values, told_undetermined
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.mechanisms.pitch import pitch_of
-from greybox_torch.name_lists import listed
 
 
 @dataclass(frozen=True)
@@ -168,33 +168,24 @@ class Effect:
     @property
     def undetermined(self) -> str:
         """Which parameters of a law have a standard deviation above their value, or why none has one, in a sentence; "" elsewhere."""
-        known = {
-            n: (v.get("value"), v.get("std")) for n, v in self.shown_parameters.items() if self.mechanism != "unknown"
-        }
-        if known and all(std is None for _, std in known.values()):
-            return (
-                "no standard deviations are known: whole records were not fitted, as the search was stopped before or no simulation of a "
-                "whole record keeps to it"
-            )
-        names = [n for n, (value, std) in known.items() if value is not None and std is not None and std > abs(value)]
-        if not names:
-            return ""
-        they, them = ("it", "it") if len(names) == 1 else ("they", "them")
-        return (
-            f"{', '.join(names)}: the standard deviation is larger than the value; {they} may be zero, or these recordings do not "
-            f"determine {them} beside the other parameters"
-        )
+        return "" if self.mechanism == "unknown" else told_undetermined(self.shown_parameters, self.at_bounds)
 
     @property
     def bounded(self) -> str:
         """Which parameters of a law are at a bound, and what that means, as of any estimate; "" elsewhere."""
-        names = [name for name in self.at_bounds if name in self.shown_parameters and self.mechanism != "unknown"]
-        return told_at_bound(listed(names)) if names else ""
+        return told_at_bound(self._at_bounds) if self._at_bounds else ""
+
+    @property
+    def _at_bounds(self) -> str:
+        return "" if self.mechanism == "unknown" else listed_with_values(self.shown_parameters, self.at_bounds)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the evidence has to know of its parameters and its probability; clauses."""
-        return tuple(filter(None, (self.conversion, self.bounded, *self.limited)))
+        bounded = (
+            f"at a bound: {self._at_bounds}" if self._at_bounds else ""
+        )  # what that means is told beside the parameters
+        return tuple(filter(None, (self.conversion, bounded, *self.limited)))
 
     @property
     def headline(self) -> str:

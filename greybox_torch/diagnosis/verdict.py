@@ -189,7 +189,8 @@ class Verdict:
     @property
     def at_bounds(self) -> tuple[str, ...]:
         """A sentence where free parameters of the model itself ended at one of their bounds."""
-        return own_at_bounds([(e.name, *e.at_bound) for e in self.parameters], bool(self.effects))
+        told = [(e.name, e.unit, e.refit, e.augmented, e.at_bound) for e in self.parameters]
+        return own_at_bounds(told, bool(self.effects))
 
     def counted(self, model: str) -> tuple[Score, ...]:
         """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""

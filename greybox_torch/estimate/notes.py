@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.termination import Outcome, Termination
+from greybox_torch.in_unit import in_unit
 from greybox_torch.name_lists import listed
 
 _ROUNDED, _ROUNDED_ZERO = 1e-9, 1e-13
@@ -17,18 +18,37 @@ def notes(problem: Problem, unidentifiable: Sequence[Unidentifiable]) -> tuple[O
     """Whether the data leave some of the free parameters undetermined, and whether some ended at a bound; which ones."""
     lost = {name for one in unidentifiable if one.undetermined for name in one.parameters}
     at_bound = at_bounds(problem)
+    placed = dict(zip(problem.names, zip(problem.values, problem.lower, problem.upper, strict=True), strict=True))
+    units = {p.name: p.unit for p in problem.model.declared_parameters}
     found = []
     if lost:
         found.append(
             Outcome(Termination.rank_deficient, listed([n for n in problem.free_names if n in lost] or sorted(lost)))
         )
     if at_bound:
-        found.append(Outcome(Termination.at_bound, listed(at_bound)))
+        found.append(
+            Outcome(Termination.at_bound, listed([_with_bound(n, units.get(n, ""), *placed[n]) for n in at_bound]))
+        )
     return tuple(found)
 
 
+def with_value(name: str, value: float, unit: str) -> str:
+    """A parameter with its value, as "b = 0.07 N m s/rad"."""
+    return in_unit(f"{name} = {value:.4g}", unit)
+
+
+def _with_bound(name: str, unit: str, value: float, lower: float, upper: float) -> str:
+    bound = nearest_bound(value, lower, upper)
+    assert bound is not None
+    return in_unit(f"{name} {'≥' if bound == lower else '≤'} {bound:.4g}", unit)
+
+
 def told_at_bound(names: str) -> str:
-    """What a reader has to know of parameters at their bounds, one sentence and another, without a full stop."""
+    """What a reader has to know of parameters at their bounds, one sentence and another, without a full stop.
+
+    Args:
+        names: the parameters, with the bounds that they are at.
+    """
     return (
         f"At a bound: {names}; the standard deviations there mean little. Where physics does not end there, the model lacks something that "
         "drives the parameter there, or the data hardly determine it beside those that it is correlated with"

@@ -26,7 +26,10 @@ LARGEST = float(np.sqrt(np.finfo(float).max))
 HARDLY_LARGER = 100.0
 """Times the largest measured value up to which a simulation has not run away."""
 
-NO_NUMBER = "no number (nan) with nothing large before it, as the root or logarithm of a negative number is, or 0/0"
+NO_NUMBER = (
+    "no number (nan) with nothing large before it, as the root or logarithm of a negative number is, or 0/0; greybox check says in which "
+    "line of the equations"
+)
 """What is said of outputs that cease to be numbers without having grown."""
 
 LANES = 64

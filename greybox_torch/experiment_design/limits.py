@@ -46,9 +46,9 @@ class Range:
 class Limits:
     """``inputs`` has a range for every input; ``outputs`` and ``states`` for those that are limited. ``seconds``: how long it may be.
 
-    ``set_points`` has the range of the set point for every input that a loop drives, and ``begin`` where that begins, by input, in the
-    output's unit. ``start``: states that the recording is to begin with. ``recorded``: inputs and outputs that nothing is given for, whose
-    range is what was recorded.
+    ``set_points`` has the range of the set point for every input that a loop drives. ``begin``: where what is commanded begins, by input,
+    of set points and of inputs whose rate is limited. ``start``: states that the recording is to begin with. ``recorded``: inputs and
+    outputs that nothing is given for, whose range is what was recorded.
     """
 
     seconds: float

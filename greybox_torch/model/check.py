@@ -157,7 +157,8 @@ def _what_happened(model: GreyBoxModel, error: Exception, outside: bool) -> str:
     if outside and isinstance(error, TypeError) and "positional argument" in str(error):
         name, arguments = ("output", "x, u, p") if ".output()" in str(error) else ("derivative", "x, u, p, port")
         hint = f"; expected def {name}(self, {arguments})"
-    return f"the equations of {model.title} raised {type(error).__name__}: {error}{hint}"
+    said = str(error).rstrip(".") if hint else str(error)
+    return f"the equations of {model.title} raised {type(error).__name__}: {said}{hint}"
 
 
 def line_of(model: GreyBoxModel, error: BaseException) -> int | None:

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import torch
 
 from greybox_torch.errors import UserError, did_you_mean
+from greybox_torch.keywords import names_checked
 from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
 from greybox_torch.model.force_outputs import output_asks_for_forces
@@ -164,6 +165,7 @@ class GreyBoxModel(torch.nn.Module):
         declared = torch.tensor(parameter.value / self._scales[parameter.name], dtype=raw.dtype)
         return parameter.name in self._set_by_name or bool(raw.cpu() != declared)
 
+    @names_checked
     def set_values(self, values: Mapping[str, float]) -> None:
         """Set parameter values in physical units. They then stand before those of a data card.
 

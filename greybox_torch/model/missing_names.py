@@ -25,7 +25,7 @@ def advice_for(model: GreyBoxModel, error: Exception) -> str:
         return f"; expected a module that is installed here; or {_OF_TORCH}"
     if isinstance(error, AttributeError) and (missing := _ATTRIBUTE.search(str(error))):
         return f"; expected a function of torch{did_you_mean(missing[1], dir(torch))}"
-    return "; use functions of torch instead" if "numpy" in str(error) else ""
+    return f"; expected {_OF_TORCH}" if "numpy" in str(error) else ""
 
 
 def _named(model: GreyBoxModel, name: str) -> str:

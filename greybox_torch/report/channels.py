@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, since_start, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
 
 _MOST_COLUMNS = 3
 _MOST_CHANNELS = 24
@@ -20,8 +20,8 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
     The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
-    in all experiments. Of very many channels or experiments the figure shows the first, and says so. Missing samples leave a gap in the
-    curve and a red mark at the foot of it, and are counted beside the axes.
+    in all experiments. Of very many channels or experiments the figure shows the first, and says so. Gaps in the time stamps break the
+    curve; missing samples leave a gap in it and a red mark at the foot of it, and are counted beside the axes.
 
     Args:
         along: the label of the horizontal axis.
@@ -61,7 +61,7 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
 
 def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
     values, time = recording.signals[channel.name], since_start(recording)
-    axes.plot(time, values, linewidth=0.7)
+    axes.plot(*broken_at_gaps(time, values), linewidth=0.7)
     axes.margins(x=0)
     missing = time[np.isnan(values)]
     if missing.size:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, since_start, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, since_start, with_unit
 
 Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 """A recording, the outputs (N, n_y) by the model's name, and what to say of each model."""
@@ -80,7 +80,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
 
 
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
-    axes.plot(time, measured, color="0.75", linewidth=3.0, label="measured")
+    axes.plot(*broken_at_gaps(time, measured), color="0.75", linewidth=3.0, label="measured")
     for label, values in runs.items():
         axes.plot(time, values, linewidth=0.9, label=label)
     axes.margins(x=0)
@@ -90,7 +90,7 @@ def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapp
 def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
     axes.axhline(0.0, color="black", linewidth=0.6)
     for values in runs.values():
-        axes.plot(time, measured - values, linewidth=0.8)
+        axes.plot(*broken_at_gaps(time, measured - values), linewidth=0.8)
     axes.margins(x=0)
     axes.set_xlabel("time [s]")
 

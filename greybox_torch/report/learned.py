@@ -18,7 +18,7 @@ from greybox_torch.report.style import STYLE, dots_within, with_unit
 from greybox_torch.training import Explanation, Trained
 from greybox_torch.training.learned_force import SignalCurve
 
-MOVED = "laws are drawn with a constant that the physics,\nestimated anew with them, takes over"
+MOVED = "laws are drawn with a constant that the physics, estimated anew with them, takes over"
 
 HARDLY_SEEN = 0.02
 """Share of the learned curve's height by which a law that lies beside it is drawn where it is."""
@@ -28,8 +28,8 @@ LAW_COLOURS = ("#c8553d", "#6a7f3f", "#8a5fa8")
 
 def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
     """A panel for every signal; the laws, as estimated in the network's place, where it reads one signal."""
-    curves, network = explained.curves, found.hybrid.network
-    height = 3.4
+    curves, network, moved = explained.curves, found.hybrid.network, False
+    height = 3.9
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(1.5 + 4.5 * len(curves), height), dpi=dots_within(height), layout="constrained")
         figure.suptitle(title, fontweight="bold")
@@ -41,8 +41,10 @@ def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
             with_unit(f"{found.hybrid.adds} at {network.port}", found.hybrid.surroundings[network.port].force_unit)
         )
         if len(curves) == 1:
-            _draw_laws(panels[0], curves[0], found, explained)
-        panels[0].legend(fontsize=8)
+            moved = _draw_laws(panels[0], curves[0], found, explained)
+        # below the panels, where it hides nothing
+        told = {"title": MOVED, "title_fontsize": 7, "alignment": "left"} if moved else {}
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, **told)
     return figure
 
 
@@ -57,7 +59,8 @@ def _draw(axes: Axes, curve: SignalCurve) -> None:
     axes.set_title(told, fontsize=9)
 
 
-def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explanation) -> None:
+def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explanation) -> bool:
+    """Draws them; whether any is drawn with a constant."""
     around = found.hybrid.surroundings[found.hybrid.network.port]
     values = np.linspace(curve.values[0], curve.values[-1], 300)
     unit, moved = around.force_unit, False
@@ -69,8 +72,7 @@ def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explan
         moved |= offset != 0.0
         by = f" {'+' if offset > 0 else '−'} {text.with_unit(digits(abs(offset)), unit)}" if offset else ""
         axes.plot(values, force + offset, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}")
-    if moved:
-        axes.text(0.02, 0.03, MOVED, transform=axes.transAxes, fontsize=7, va="bottom")
+    return moved
 
 
 def offset_of(curve: SignalCurve, values: np.ndarray, force: np.ndarray) -> float:

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.estimate.residuals import Correlation, Residuals
-from greybox_torch.report.style import MOST_PANELS, STYLE, dots_within, shown_of, since_start, with_unit
+from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
 
 
 def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
@@ -25,7 +25,7 @@ def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
     columns = 2 + max(len(row.inputs) for row in rows)
     title += shown_of("rows", min(len(rows), MOST_PANELS // 3), len(rows))
     rows = rows[: MOST_PANELS // 3]
-    height = 0.7 + 2.3 * len(rows)
+    height = 1.4 + 1.5 * len(rows)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(4.0 * columns, height), dpi=dots_within(height), layout="constrained")
         figure.suptitle(title, fontweight="bold")
@@ -35,16 +35,27 @@ def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
             _plot_correlation(places[1], row.whiteness, "autocorrelation")
             for place, (name, correlation) in zip(places[2:], row.inputs.items(), strict=True):
                 _plot_correlation(place, correlation, f"correlation with {name} earlier by the lag")
+        _label_once(axes)
         figure.legend(*axes[0, 1].get_legend_handles_labels(), loc="outside lower center")
     return figure
 
 
+def _label_once(axes: np.ndarray) -> None:
+    """A column has its label at the foot, and its title at the top where all rows have the same; a row for each output would be high."""
+    for k, column in enumerate(axes.T):
+        for below in column[1:]:
+            if k > 0 and below.get_title() == column[0].get_title():
+                below.set_title("")
+        for above in column[:-1]:
+            above.set_xlabel("")
+
+
 def _plot_errors(axes: Axes, row: Residuals) -> None:
-    axes.plot(since_start(row.recording), row.errors, linewidth=0.6)
+    axes.plot(*broken_at_gaps(since_start(row.recording), row.errors), linewidth=0.6)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")
     axes.set_xlabel("time [s]")
-    axes.set_ylabel("residual of " + with_unit(row.output.name, row.output.unit))
+    axes.set_ylabel("residual of\n" + with_unit(row.output.name, row.output.unit))
 
 
 def _plot_correlation(axes: Axes, correlation: Correlation, title: str) -> None:

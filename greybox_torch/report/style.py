@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import Recording
+from greybox_torch.data.gaps import gap_steps
 
 STYLE: dict[Any, Any] = {
     "text.parse_math": False,  # a name may hold dollar signs
@@ -26,6 +27,12 @@ def dots_within(height: float) -> float:
 def since_start(recording: Recording) -> np.ndarray:
     """Seconds since a recording's first sample (N,), for an axis: stamps may be dates, of which seconds since 1970 nobody can read."""
     return recording.time - recording.time[0]
+
+
+def broken_at_gaps(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values (N,) with a value that is none after every sample that a gap follows, so that no line is drawn across it."""
+    after = np.flatnonzero(gap_steps(time)) + 1
+    return np.insert(time, after, time[after - 1]), np.insert(values.astype(float), after, np.nan)
 
 
 def with_unit(name: str, unit: str) -> str:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import sys
+from contextlib import suppress
 from pathlib import Path
 from types import ModuleType
 
@@ -51,7 +53,9 @@ def model_class(name: str) -> type[GreyBoxModel]:
     file, separator, class_name = name.rpartition(":")
     if not separator or not file.endswith(".py"):
         if name.endswith(".py") and Path(name).is_file():
-            raise UserError(f"model '{name}' is a file; expected the class in it as well, such as {name}:Motor")
+            raise UserError(
+                f"model '{name}' is a file; expected the class in it as well, such as {name}:{_class_in(name)}"
+            )
         known = ", ".join(BUILT_IN)
         raise UserError(
             f"model '{name}' is unknown; expected a built-in system ({known}) or a file and class such as my_motor.py:Motor"
@@ -73,6 +77,17 @@ def model_class(name: str) -> type[GreyBoxModel]:
 def _named(model: GreyBoxModel, name: str) -> GreyBoxModel:
     model.loaded_as = name
     return model
+
+
+def _class_in(file: str) -> str:
+    """A model's class that a file defines, read and not run; one for an example where there is none."""
+    with suppress(OSError, ValueError, SyntaxError, RecursionError):
+        for node in ast.parse(Path(file).read_bytes()).body:
+            if isinstance(node, ast.ClassDef):
+                bases = [ast.unparse(base) for base in node.bases]
+                if any(base.rpartition(".")[2] == GreyBoxModel.__name__ for base in bases):
+                    return node.name
+    return "Motor"
 
 
 def _run(file: Path) -> ModuleType:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from greybox_torch.errors import UserError
 from greybox_torch.files import absolute
+from greybox_torch.keywords import keyword_advice
 
 
 @contextmanager
@@ -30,15 +31,20 @@ def users_code(file: Path, place: str, doing: str) -> Iterator[None]:
     try:
         with redirect_stdout(sys.stderr):
             yield
-    except (KeyboardInterrupt, UserError):
+    except KeyboardInterrupt:
         raise
+    except UserError as error:
+        line = "" if ", line " in str(error) else line_in(file, error)
+        if not line:
+            raise
+        raise UserError(f"{place}{line}: {error}") from None
     except SystemExit as error:
         raise UserError(
             f"{place}{line_in(file, error)}: {doing} called sys.exit({_said(error)}); expected a class, and nothing that ends the program"
         ) from None
     except BaseException as error:
         raise UserError(
-            f"{place}{line_in(file, error)}: {doing} raised {type(error).__name__}: {_said(error)}"
+            f"{place}{line_in(file, error)}: {doing} raised {type(error).__name__}: {_said(error)}{keyword_advice(error)}"
         ) from None
 
 

@@ -7,9 +7,11 @@ from itertools import pairwise
 from typing import Any
 
 from greybox_torch.errors import UserError
+from greybox_torch.keywords import fields_checked
 from greybox_torch.training.gradients import check_gradient
 
 
+@fields_checked
 @dataclass(frozen=True)
 class TrainingSettings:
     """Choices of a training; the defaults train the hybrid of the robot arm in well under a minute on two cores.

@@ -25,6 +25,8 @@ def test_train(folder: Path, data: gt.DataSet) -> None:
     for row in compared.scores:
         assert row["fit"] == pytest.approx(by_model[row["model"], row["experiment"]], abs=1e-6)
     assert found.force(input=np.array([2.0])).shape == (1,) and isinstance(found.plot_learned(), Figure)
+    learned = found.plot_learned()
+    assert learned is not None and learned.legends and learned.axes[0].get_legend() is None, "seen: over the note"
     files = {f"{name}.{kind}" for name in ("model", "named") for kind in ("json", "safetensors")}
     check_shown(found, folder / "saved", {"train.json", "learned.png", *files})
     assert gt.load(folder / "saved" / "named").values() == found.named.values()

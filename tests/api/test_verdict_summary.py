@@ -69,10 +69,13 @@ def test_a_parameter_of_a_law_at_its_bound_is_told_as_fit_tells_it() -> None:
     entry = {"value": 1.0, "std": 0.088, "unit": "", "description": ""}
     effect = replace(BACKLASH, parameters={"sharpness": entry}, at_bounds=("sharpness",))
     (told,) = [line for line in notes(verdict(effect)) if "bound" in line]
-    assert told == f"backlash at gear_spring: {told_at_bound('sharpness')}"
+    assert told == f"backlash at gear_spring: {told_at_bound('sharpness = 1')}"
     shown = Effects.of(verdict(effect))
-    assert shown is not None and shown.cards[0].bounded == told_at_bound("sharpness")
+    assert shown is not None and shown.cards[0].bounded == told_at_bound("sharpness = 1")
     assert not [line for line in notes(verdict(replace(effect, mechanism="unknown"))) if "At a bound" in line]
+    assert effect.remarks == ("at a bound: sharpness = 1",), "seen: both sentences once more in the evidence"
+    zero = replace(effect, parameters={"sharpness": {**entry, "value": 0.0}})
+    assert zero.undetermined == "" and replace(zero, at_bounds=()).undetermined, "seen: two remarks that say the same"
 
 
 def test_an_experiment_that_no_longer_judges_is_told_first() -> None:
@@ -181,8 +184,8 @@ def test_the_models_own_parameters_at_a_bound_are_told() -> None:
         Estimate("M", "kg", 6.0, (6.5, 0.1), (7.0, 0.1)),
     )
     found, without = (replace(verdict(*effects), parameters=own) for effects in ((BACKLASH,), ()))
-    told = f"{told_at_bound('b (with the effects) and T (without the effects)')}."
+    told = f"{told_at_bound('b = 0 N s/m (with the effects) and T = 0.005 s (without the effects)')}."
     assert told in notes(found) and found.as_json()["at_bounds"] == [told]
-    assert f"{told_at_bound('T')}." in notes(without) and "at_bounds" not in verdict().as_json()
+    assert f"{told_at_bound('T = 0.005 s')}." in notes(without) and "at_bounds" not in verdict().as_json()
     small = replace(BACKLASH, parameters={"sharpness": {"value": 9.0}}, at_bounds=("sharpness",))
-    assert any(told_at_bound("sharpness") in line for line in notes(replace(found, refinements=(small,))))
+    assert any(told_at_bound("sharpness = 9") in line for line in notes(replace(found, refinements=(small,))))

@@ -55,7 +55,7 @@ def test_says_what_is_at_a_bound(motor_folder: Make, edit: Edit) -> None:
     folder = motor_folder()
     edit(folder / "dataset.toml", "upper = 1.0", "lower = 0.07")
     result = fit(folder)
-    assert "At a bound: b" in result.stdout
+    assert "At a bound: b ≥ 0.07 N m s/rad; " in result.stdout
 
 
 def test_identifiability_is_told_before_estimating(motor_folder: Make, edit: Edit) -> None:
@@ -110,7 +110,7 @@ def test_bounds_in_the_result(motor_folder: Make, edit: Edit) -> None:
     edit(folder / "dataset.toml", "upper = 1.0", "lower = 0.07")
     (note,) = json.loads(fit(folder, "--json").stdout)["statistics"]["notes"]
     assert note["kind"] == "at_bound"
-    assert note["sentence"].startswith("ended at a bound") and "(b)" in note["sentence"]
+    assert note["sentence"].startswith("ended at a bound") and "(b ≥ 0.07 N m s/rad)" in note["sentence"]
 
 
 def test_profiles(motor_folder: Make) -> None:

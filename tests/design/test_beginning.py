@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.design import _where_outputs_stand
 from greybox_torch.api.design_files import CARD
 from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
-from greybox_torch.experiment_design.approach import begun_there
+from greybox_torch.experiment_design.approach import begun_at, begun_there
 from greybox_torch.experiment_design.beginning import beginning_of
 from greybox_torch.experiment_design.contender import Contender, contender
 from greybox_torch.experiment_design.controller import Loop
@@ -106,4 +105,20 @@ def test_where_the_output_stands(undecided) -> None:
     loop = Loop(driven=0, measured=0, lower=-3.0, upper=3.0, step=0.01, gain=1.0)
     one = contender("friction", 0.5, undecided.model, undecided.data, {"steps": {"speed": 2.0}}, [loop])
     limits = Limits(1.0, {"voltage": Range(-3.0, 3.0)}, {}, {}, {"voltage": Range(-7.0, 7.0)})
-    assert _where_outputs_stand(one, limits, 0.01) == {"voltage": pytest.approx(2.0)}
+    assert begun_at(one, limits, 0.01) == {"voltage": pytest.approx(2.0)}
+
+
+def test_an_input_of_a_limited_rate_begins_where_it_stood(undecided) -> None:
+    """Seen: 200 V/s at most, and 22 V at the first sample of a motor at rest."""
+    stood = undecided.data.recordings[0].signals["voltage"][0]
+    limits = {**undecided.data.limits, "voltage": {"lower": -3.0, "upper": 3.0, "rate": 20.0}}
+    found = gt.design(undecided, precision="J", seconds=0.5, limits=limits)
+    voltage = found.inputs["voltage"]
+    assert voltage[0] == stood and np.abs(np.diff(voltage)).max() <= 20.0 * 0.01 * (1 + 1e-9)
+    assert any(f"begins with voltage = {stood:.4g} V" in note for note in found.notes)
+    far = gt.design(
+        undecided, precision="J", seconds=0.5, limits={**limits, "voltage": {"lower": -3, "upper": -1, "rate": 20.0}}
+    )
+    assert far.inputs["voltage"][0] == -1.0
+    free = gt.design(undecided, precision="J", seconds=0.5)
+    assert not free.limits.begin and not any("limited rate" in note for note in free.notes)

@@ -140,6 +140,18 @@ def test_options_at_fault(results: Path, options: list[str], message: str) -> No
     assert not (results / "design").exists()
 
 
+def test_a_finding_that_is_decided_is_no_error(results: Path) -> None:
+    """Seen: exit code 2, as if the user had done something wrong. The verdict's own reason is told."""
+    file = results / "hypotheses.json"
+    content = json.loads(file.read_text())
+    own, rival = content["findings"][0]
+    own |= {"probability": 0.97, "in_verdict": 0.5, "limited": ["a free curve does better in its place"]}
+    file.write_text(json.dumps({**content, "findings": [[own, {**rival, "probability": 1e-6}]]}))
+    result = CliRunner().invoke(app, ["design", str(results)])
+    assert result.exit_code == 4 and "nothing to design: of the named hypotheses" in result.stderr
+    assert "error" not in result.stderr and "another reason: a free curve does better in its place" in result.stderr
+
+
 @pytest.mark.parametrize(
     ("content", "message"),
     [

@@ -16,7 +16,7 @@ from greybox_torch.api.expected import Expected, decided
 from greybox_torch.api.hypotheses import _left, hypotheses_of, hypothesis_files, left_out_told, to_tell_apart
 from greybox_torch.diagnosis.describe.rivals import Rival
 from greybox_torch.diagnosis.verdict import Left
-from greybox_torch.errors import UserError
+from greybox_torch.errors import NothingToDo, UserError
 from greybox_torch.mechanisms.actuator import InputBias
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
@@ -66,23 +66,30 @@ def test_design_begins_as_the_final_model(two_found: DiagnosisResult) -> None:
 @pytest.mark.parametrize(
     ("in_verdict", "complete", "words"),
     [
-        (0.97, True, r"0\.97, each rival less than 0\.005; expected"),
-        (0.85, True, r"0\.85, each rival less than 0\.005; it is no surer as more than noise is left beside it"),
-        (0.85, False, r"0\.85, .*the search was stopped"),
+        (
+            0.97,
+            True,
+            r"already decided: quadratic drag at rotor has a probability of 0\.97, each rival less than 0\.005; expected",
+        ),
+        (0.5, True, r"leave quadratic drag at rotor alone .*is 0\.50 has another reason: as free runs leave 16 %"),
+        (0.85, False, r"leave quadratic drag at rotor alone .*is 0\.85 has another reason: the search was stopped"),
     ],
 )
 def test_what_is_decided_is_not_recorded(two_found, tmp_path, in_verdict: float, complete: bool, words: str) -> None:
     """Seen: "a probability of 0.97", where the verdict says 0.85."""
     *_, final, other = two_found.found.rivals
-    effects = (replace(BACKLASH, port=final.port, mechanism=final.mechanism, probability=in_verdict),)
+    why = ("as free runs leave 16 %",)
+    effects = (replace(BACKLASH, port=final.port, mechanism=final.mechanism, probability=in_verdict, limited=why),)
     verdict = replace(two_found.verdict, effects=effects, complete=complete)
     rivals = (replace(final, probability=0.97), replace(other, probability=1e-5))
     sure = replace(two_found, found=replace(two_found.found, verdict=verdict, rivals=rivals))
-    with pytest.raises(UserError, match=rf"already decided.*quadratic drag at rotor.*{words}.*--precision PARAMETER"):
+    with pytest.raises(NothingToDo, match=rf"nothing to design: .*{words}.*--precision PARAMETER") as told:
         gt.design(sure)
+    assert in_verdict > 0.95 or "decided" not in str(told.value), "seen: already decided, with a probability of 0.50"
     files = hypothesis_files(tmp_path, sure, sure._checkpoint())
     kept = json.loads(files[tmp_path / "hypotheses.json"])
     assert [one["in_verdict"] for one in kept["findings"][0]] == [in_verdict, None] and kept["complete"] is complete
+    assert [one.get("limited") for one in kept["findings"][0]] == [list(why), None]
 
 
 def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:

@@ -51,7 +51,7 @@ def test_the_numbers_are_blamed_and_not_the_data(experiments: list[Any], data_se
     ended = replace(sound, problem=fast, identifiability=(found,), notes=notes(fast, (found,)))
     assert [note.kind for note in ended.notes] == [Termination.at_bound]
     first, second = warnings(ended)
-    assert first.startswith("At a bound: v_0; ")
+    assert first.startswith("At a bound: v_0 ≥ 0.001; ")
     assert second.startswith("No standard deviation is known") and "the numbers that failed" in second
 
 

@@ -9,11 +9,11 @@ from typing import cast
 import numpy as np
 from matplotlib.figure import Figure
 
-from greybox_torch.data import DataSet, Recording, load_dataset
-from greybox_torch.estimate.residuals import Residuals
+from greybox_torch.data import Channel, DataSet, Recording, load_dataset
+from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.report.channels import plot_channels
 from greybox_torch.report.comparison import plot_comparison
-from greybox_torch.report.residuals import _plot_errors
+from greybox_torch.report.residuals import _plot_errors, plot_residuals
 
 
 def test_every_channel_of_every_experiment(bench: Path) -> None:
@@ -30,6 +30,29 @@ def test_every_channel_of_every_experiment(bench: Path) -> None:
     assert [text.get_text() for text in axes[1].texts] == ["1 missing"]
     assert axes[1].texts[0].get_position()[0] > 1.0, "seen: on the curve"
     assert axes[1].lines[1].get_xdata() == [0.07]
+
+
+def test_no_line_is_drawn_across_a_gap(bench: Path) -> None:
+    """Seen: 0.3 s without a sample as a straight line, as if it had been measured."""
+    data = load_dataset(bench / "dataset.toml")
+    late = np.where(np.arange(len(data.recordings[0])) < 20, 0.0, 0.3)
+    torn = replace(data.recordings[0], time=data.recordings[0].time + late)
+    figure = plot_channels(DataSet([torn], channels=data.channels, held_out_by_default=False))
+    voltage = np.asarray(figure.axes[0].lines[0].get_ydata())
+    assert np.flatnonzero(np.isnan(voltage)).tolist() == [20] and len(voltage) == len(torn) + 1
+
+
+def test_residuals_label_a_column_once() -> None:
+    """Seen: 36 panels of 2568 dots in height, every one with a title and a label of its own."""
+    found = Correlation(np.arange(3), np.zeros(3), 0.1)
+    run = Recording.from_arrays("run", {"speed": np.zeros(12)}, sample_time=0.1)
+    row = SimpleNamespace(
+        recording=run, output=Channel("speed", "rad/s"), errors=np.zeros(12), whiteness=found, inputs={"u": found}
+    )
+    figure = plot_residuals(cast(list[Residuals], [row] * 9), "title")
+    titles = [axes.get_title() for axes in figure.axes]
+    assert titles.count("autocorrelation") == 1 and titles.count("run (estimation)") == 9
+    assert [axes.get_xlabel() for axes in figure.axes].count("lag [samples]") == 2 and figure.get_figheight() < 16.0
 
 
 def test_time_axes_begin_at_0(bench: Path) -> None:

@@ -34,6 +34,8 @@ def test_file_and_class(machines: Path) -> None:
             "my_motor.py",
             "model 'my_motor.py' is a file; expected the class in it as well, such as my_motor.py:Motor",
         ),
+        (MOTOR.replace("class Motor", "class Winch"), "my_motor.py", "such as my_motor.py:Winch"),
+        ("1 +", "my_motor.py", "such as my_motor.py:Motor"),
         (MOTOR, "nowhere.py:Motor", "model file nowhere.py: no such file"),
         (MOTOR, "my_motor.py:Engine", "class 'Engine' is not defined; it defines Motor"),
         (MOTOR, "my_motor.py:Body", "class 'Body' is not a GreyBoxModel; it defines Motor"),
@@ -53,7 +55,7 @@ def test_file_and_class(machines: Path) -> None:
         (
             MOTOR.replace("u.voltage", "u.volts"),
             "my_motor.py:Motor",
-            r"class Motor: .*the input 'volts'.*declared: voltage",
+            r"class Motor, line \d+: .*the input 'volts'.*declared: voltage",
         ),
         (MOTOR.replace("/ p.J", "/ 0"), "my_motor.py:Motor", None),
         (

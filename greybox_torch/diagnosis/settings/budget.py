@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 from greybox_torch.diagnosis.settings.fields import check, count, counts, iteration, number, ratio, share
 from greybox_torch.estimate.levenberg_marquardt import Settings
+from greybox_torch.keywords import fields_checked
 
 TIME = "time and results of the development cases"
 
 
+@fields_checked
 @dataclass(frozen=True, kw_only=True)
 class SearchBudget:
     """Limits of the search: how many hypotheses go on at every stage, how far each is refitted, how finely curves are drawn.

@@ -18,8 +18,10 @@ from greybox_torch.diagnosis.settings.held_out_decides import HeldOutDecidesSett
 from greybox_torch.diagnosis.settings.probability import ProbabilitySettings
 from greybox_torch.diagnosis.settings.sampling import SamplingSettings
 from greybox_torch.diagnosis.settings.searching_again import SearchingAgainSettings
+from greybox_torch.keywords import fields_checked
 
 
+@fields_checked
 @dataclass(frozen=True, kw_only=True)
 class DiagnosisSettings(
     ResidualSettings,

@@ -216,4 +216,6 @@ def _timeline(along: Timeline, y: Scale) -> Panel:
         f"{text.number(float(along.edges[peak]))} and {text.number(float(along.edges[peak + 1]))} s."
     )
     marks = (bars(x, y, along.edges, 100.0 * along.share, "effect"),)
-    return Panel(x, y, "time [s]", "share of explained error [%]", marks, alt, "low", along.experiment, zero=True)
+    return Panel(
+        x, y, "time [s]", "share of explained error [%]", marks, alt, "low", f"experiment {along.experiment}", zero=True
+    )

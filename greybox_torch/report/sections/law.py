@@ -7,7 +7,7 @@ import numpy as np
 from greybox_torch.diagnosis.effect import Curve, Effect
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.report import text
-from greybox_torch.report.chart.marks import Mark, band, line, points, rug
+from greybox_torch.report.chart.marks import RUG, Mark, band, line, points, rug
 from greybox_torch.report.chart.panel import Chart, Key, Panel, side_by_side
 from greybox_torch.report.chart.scale import Scale, linear
 
@@ -109,7 +109,12 @@ def _height(curve: Curve) -> Scale:
             pieces.append(np.clip(np.quantile(free.asked, [0.02, 0.98]), *ends))
     elif curve.spread is not None:
         pieces += [np.clip(curve.force + 2.0 * k * np.nan_to_num(curve.spread), *ends) for k in (-1.0, 1.0)]
-    return linear(*pieces)
+    found = linear(*pieces)
+    if curve.seen is None:
+        return found
+    return Scale(
+        found.high - (found.high - found.low) / (1.0 - RUG), found.high
+    )  # the bars stand below all that is drawn
 
 
 def _legend(effect: Effect, curve: Curve, y: Scale) -> tuple[Key, ...]:

@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.metrics import root_mean_square
+from greybox_torch.name_lists import listed
 from greybox_torch.report import text
 from greybox_torch.report.chart.marks import Mark, line, span
 from greybox_torch.report.chart.panel import Chart, Key, Live, Panel
@@ -54,12 +55,20 @@ class Traces:
         mismatch, numbers = bool(verdict.effects), list(dict.fromkeys(t.experiment for t in drawn))
         inputs = [_inputs(verdict, t) if t is _first(drawn, t.experiment) else () for t in drawn]
         most = share_of_each(len(drawn), 1 + 2 * len(series(drawn[0], mismatch)) + max(map(len, inputs)))
+        titles = [t.experiment + (f": {text.words(t.output)}" if several else "") for t in drawn]
         charts = [
             Named(
-                t.experiment + (f": {text.words(t.output)}" if several else ""),
-                _chart(t, mismatch, own, numbers.index(t.experiment), most),
+                title,
+                _chart(
+                    t,
+                    mismatch,
+                    own,
+                    numbers.index(t.experiment),
+                    most,
+                    _where_inputs_are(verdict, t, own, drawn, titles),
+                ),
             )
-            for t, own in zip(drawn, inputs, strict=True)
+            for t, own, title in zip(drawn, inputs, titles, strict=True)
         ]
         return cls(tuple(charts), len(shown) - len(charts))
 
@@ -73,6 +82,22 @@ def _inputs(verdict: Verdict, trace: Trace) -> tuple[InputTrace, ...]:
     """The first inputs of a trace's experiment."""
     own = (i for i in verdict.inputs if i.experiment == trace.experiment and len(i.time) == len(trace.time))
     return tuple(islice(own, MOST_INPUTS))
+
+
+def _where_inputs_are(
+    verdict: Verdict, trace: Trace, drawn: Sequence[InputTrace], traces: Sequence[Trace], titles: Sequence[str]
+) -> str:
+    """Which inputs are not ``drawn`` beneath a trace, and where they are, as sentences."""
+    first = _first(traces, trace.experiment)
+    if trace is not first:
+        there = bool(_inputs(verdict, first))
+        return (
+            f" Inputs are drawn under {next(n for n, t in zip(titles, traces, strict=True) if t is first)}."
+            if there
+            else ""
+        )
+    names = [i.input for i in verdict.inputs if i.experiment == trace.experiment][len(drawn) :]
+    return f" Not drawn of the inputs: {listed([text.words(name) for name in names])}." if names and drawn else ""
 
 
 def validation_traces(verdict: Verdict) -> list[Trace]:
@@ -123,7 +148,9 @@ class _Stretch:
         return Live(names, (low, high), self.detail, held) if self.closer else None
 
 
-def _chart(trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int) -> Chart:
+def _chart(
+    trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int, of_inputs: str
+) -> Chart:
     runs = series(trace, mismatch)
     worst = _worst(trace, list(runs.values())[-1])
     where = "detail where the error after is largest" if mismatch else "detail where the error is largest"
@@ -138,7 +165,9 @@ def _chart(trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experimen
         panels += [_input(here, one, k, last=k == len(inputs) - 1) for k, one in enumerate(inputs)]
         columns.append(tuple(panels))
     what = text.first_capital(text.words(trace.output))
-    caption = f"{what} measured and simulated, and the error between them: {_told(trace, runs, slice(None))}."
+    caption = (
+        f"{what} measured and simulated, and the error between them: {_told(trace, runs, slice(None))}.{of_inputs}"
+    )
     samples = Samples(experiment, trace.time, _carried(trace, runs, inputs)).text(most)
     return Chart(tuple(columns), caption, (Key("measured", "measured"), *keys(mismatch)), samples)
 

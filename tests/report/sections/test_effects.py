@@ -73,7 +73,7 @@ def test_where_along_the_experiments(of_kind: Callable[[str], Verdict]) -> None:
     bare, card = effects.cards
     assert bare.timelines is None and card.timelines is not None
     panels = [panel for (panel,) in card.timelines.columns]
-    assert [panel.title for panel in panels] == ["Run 2", "Run 3", "Run 4", "Run 5"]
+    assert [panel.title for panel in panels] == [f"experiment Run {k}" for k in (2, 3, 4, 5)], "seen: c"
     assert len({panel.y for panel in panels}) == 1
     assert panels[-1].alt == (
         "Share of the explained error energy along Run 5: 7 % in all, most of it between 1.00 and 2.00 s."

@@ -7,6 +7,7 @@ import pytest
 
 from greybox_torch.diagnosis.effect import Effect, FreeCurve
 from greybox_torch.diagnosis.factor import Factor
+from greybox_torch.report.chart.marks import RUG
 from greybox_torch.report.chart.panel import Chart
 from greybox_torch.report.sections.law import law_chart
 from tests.report.conftest import BACKLASH, UNKNOWN
@@ -51,6 +52,14 @@ def test_the_axis_does_not_follow_what_is_not_known() -> None:
     """The law reaches from −0.125 to 0.125: what lies farther off than that again is cut."""
     scale = drawn(over_data(BACKLASH)).columns[0][0].y
     assert -0.45 < scale.low < -0.125 and 0.125 < scale.high < 0.45
+
+
+def test_the_bars_stand_below_what_is_drawn() -> None:
+    """Seen: a Coulomb curve on the lower edge, with its dots behind the bars that show where samples lie."""
+    assert BACKLASH.curve is not None
+    scale = drawn(replace(BACKLASH, curve=replace(BACKLASH.curve, seen=np.full(40, 3)))).columns[0][0].y
+    lowest = (float(BACKLASH.curve.force.min()) - scale.low) / (scale.high - scale.low)
+    assert lowest > RUG
 
 
 def test_an_unknown_curve_has_its_band_and_points() -> None:

@@ -42,4 +42,4 @@ def test_a_model_without_free_parameters(of_kind: Callable[[str], Verdict]) -> N
 def test_a_parameter_at_a_bound_is_told_below_the_table(of_kind) -> None:
     bounded = replace(of_kind("found"), parameters=(replace(F_C, at_bound=(False, True)), K))
     told = Parameters.of(bounded)
-    assert told is not None and told.bounded.startswith("At a bound: F_c (with the effects);")
+    assert told is not None and told.bounded.startswith("At a bound: F_c = 0.5983 N m (with the effects);")

@@ -46,6 +46,12 @@ def test_inputs_stand_beneath_the_first_output(with_traces: Callable[..., Verdic
     assert len(labels[0]) == len(labels[1]) == 2 + MOST_INPUTS and len(labels[2]) == 2
     assert [panel.x_label for panel in first[0]] == ["", "", "", "time [s]"]
     assert [panel.x_label for panel in third[0]] == ["", "time [s]"]
+    told = [one.chart.caption for one in drawn(with_inputs(verdict, 3)).charts]
+    assert told[0].endswith(" Not drawn of the inputs: voltage 2."), "seen: an input that is not drawn, and not a word"
+    assert (
+        told[2].endswith(" Inputs are drawn under A: motor speed.")
+        and "nputs" not in drawn(verdict).charts[0].chart.caption
+    )
 
 
 def test_only_the_whole_record_can_be_looked_closer_at(with_traces: Callable[..., Verdict]) -> None:

@@ -1,0 +1,85 @@
+"""What is said of an argument by a name that a public function or class does not have: the name that is meant, and those that there are."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from functools import wraps
+from importlib import import_module
+from typing import ParamSpec, TypeVar
+
+from greybox_torch.errors import ArgumentError, did_you_mean
+
+MOST = 20
+"""Names that a message lists at most."""
+
+_UNEXPECTED = re.compile(r"(\w+)(?:\.__init__)?\(\) got an unexpected keyword argument '(\w+)'")
+_SETTINGS: list[type] = []
+"""Classes of settings, one of which may have the field that another is asked for."""
+
+_Given = ParamSpec("_Given")
+_Returned = TypeVar("_Returned")
+_Class = TypeVar("_Class", bound=type)
+
+
+def keyword_advice(error: BaseException) -> str:
+    """What to go on with in a message about an error that code of a user raised, where it gave a public function or class such a name."""
+    found = _UNEXPECTED.search(str(error)) if isinstance(error, TypeError) else None
+    package = import_module(__name__.partition(".")[0])  # its public names are loaded on first use
+    if found is None or found[1] not in package.__all__:
+        return ""
+    function, name = getattr(package, found[1]), found[2]
+    return f"{_meant(name, function)}; {_taken(function)}"
+
+
+def names_checked(function: Callable[_Given, _Returned]) -> Callable[_Given, _Returned]:
+    """The function, which says as an ArgumentError that it takes no argument of a name, with the near name: Python's TypeError has none."""
+
+    @wraps(function)
+    def called(*args: _Given.args, **kwargs: _Given.kwargs) -> _Returned:
+        _check(function, function, kwargs)
+        return function(*args, **kwargs)
+
+    return called
+
+
+def fields_checked(settings: _Class) -> _Class:
+    """The class, made to say the same of fields that it does not have."""
+    made: Callable[..., None] = settings.__init__
+
+    @wraps(made)
+    def init(self: object, *args: object, **kwargs: object) -> None:
+        _check(made, settings, kwargs)
+        made(self, *args, **kwargs)
+
+    settings.__init__ = init
+    _SETTINGS.append(settings)
+    return settings
+
+
+def _check(function: Callable[..., object], called: Callable[..., object], given: dict[str, object]) -> None:
+    known = inspect.signature(function).parameters
+    if any(one.kind is inspect.Parameter.VAR_KEYWORD for one in known.values()):
+        return
+    for name, value in given.items():
+        if name not in known:
+            problem = f"{called.__name__}() takes no argument of this name{_meant(name, called)}; {_taken(called)}"
+            raise ArgumentError(name, value, problem)
+
+
+def _names(function: Callable[..., object]) -> list[str]:
+    return [name for name in inspect.signature(function).parameters if name != "self"]
+
+
+def _meant(name: str, function: Callable[..., object]) -> str:
+    others = {
+        f"{one.__name__}({field}=…)": field for one in _SETTINGS if function in _SETTINGS for field in _names(one)
+    }
+    elsewhere = next((call for call, field in others.items() if did_you_mean(name, [field])), "")
+    return did_you_mean(name, _names(function)) or (f" (did you mean {elsewhere}?)" if elsewhere else "")
+
+
+def _taken(function: Callable[..., object]) -> str:
+    names = _names(function)
+    return f"it takes {', '.join(names)}" if len(names) <= MOST else f"it takes {len(names)} others, which help() lists"
