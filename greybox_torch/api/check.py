@@ -25,11 +25,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.problem import Problem, make_problem
-<<<<<<< HEAD
-=======
-from greybox_torch.experiment_design.limits import limits_of
 from greybox_torch.keywords import names_checked
->>>>>>> 4b164328b736db240ea785a9eb9747c3c6e5a640
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.systems import model_class
 from greybox_torch.systems.user_code import users_code
