@@ -64,7 +64,7 @@ def test_refused(
     [
         ("/ p.J", "/ 0 + undefined", ["my_motor.py, line 20: ", "NameError: name 'undefined' is not defined"]),
         ('speed="speed"', 'speed="sped"', ["my_motor.py, class Motor: port 'rotor': speed = \"sped\" is not a state"]),
-        ("u.voltage", "u.volts", ["my_motor.py, class Motor: ", "the input 'volts'", "declared: voltage"]),
+        ("u.voltage", "u.volts", ["my_motor.py, class Motor, line ", "the input 'volts'", "declared: voltage"]),
         ("class Motor", "1 / 0\nclass Motor", ["my_motor.py, line 6: running it raised ZeroDivisionError"]),
         ("class Motor(", "class Motor:\nclass Engine(", ["my_motor.py, line 7: running it raised IndentationError"]),
         ("return {\"speed\": x.speed}", "return {}", ["Motor.output() returned nothing; expected speed"]),
