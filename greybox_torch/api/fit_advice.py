@@ -16,6 +16,9 @@ WORSE = 1.0
 RAN_AWAY = 1e8
 """Times its start value from which an estimate has run away: no card is that far off, but by a unit that is wrong."""
 
+FAR_LARGER = 2.0
+"""Times the median error in the others from which an experiment's is no matter of how little moved in it."""
+
 DIAGNOSE = "`greybox diagnose` says what."
 
 
@@ -64,6 +67,37 @@ def lost_outputs(scores: Scores) -> str | None:
         f"{told} {'is' if len(lost) == 1 else 'are'} simulated no better than a constant would, which the mean fit of "
         f"{mean_fit(judging):.3g} % hides: {its} column, sign, scale or unit on the card may be wrong, or that of what drives {it}, or the "
         f"model lacks something there. {DIAGNOSE}"
+    )
+
+
+def lost_in_one(scores: Scores) -> str | None:
+    """A sentence where an estimation experiment has an output that is simulated no better than a constant would, with a far larger error
+    than in the others, in which it is simulated better; else None: of outputs lost everywhere the other sentences speak.
+
+    Arguments as for :func:`fit_advice`.
+    """
+    refit, told = of_moving_outputs(scores["refit"]), []
+    for score in refit:
+        others = [s for s in refit if s.output == score.output and s.experiment != score.experiment]
+        better = max(others, key=lambda s: s.fit, default=None)
+        if (
+            score.role != "estimation"
+            or better is None
+            or not np.isfinite(score.fit)
+            or score.fit > 0.0
+            or better.fit <= 0.0
+        ):
+            continue
+        if score.rmse >= FAR_LARGER * float(np.median([s.rmse for s in others])):
+            told.append(
+                f"{score.output} in {score.experiment} ({score.fit:.3g} %, in {better.experiment} {better.fit:.3g} %)"
+            )
+    if not told:
+        return None
+    return (
+        f"Simulated no better than a constant would, and elsewhere better: {listed(told)}. A column of that experiment has another sign, "
+        "unit or meaning than the card says (`greybox inspect` draws them), or something acted in it that the model lacks. All estimates "
+        f"are bent by it. {DIAGNOSE}"
     )
 
 

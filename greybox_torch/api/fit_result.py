@@ -13,7 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
-from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_outputs, ran_away
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs, ran_away
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
@@ -145,7 +145,9 @@ class FitResult(EstimatedModel):
         away = ran_away(problem, self.data)
         said = fit_advice(self._scores, begun_with(problem, self.data))
         asked = None if self.question is None else f"{self.question}."
-        lines = (None if away is None else f"{away}.", said, lost_outputs(self._scores), asked)
+        lost = lost_outputs(self._scores)
+        alone = None if said or lost else lost_in_one(self._scores)
+        lines = (None if away is None else f"{away}.", said, lost, alone, asked)
         return [line for line in lines if line is not None]
 
     @property

@@ -13,7 +13,8 @@ from greybox_torch.api.fit_json import parameters_json
 from greybox_torch.api.scores import Scores
 from greybox_torch.api.train_advice import explained_sentence
 from greybox_torch.api.train_held_out import mostly_lost
-from greybox_torch.mechanisms.matching import LEAST_MATCH
+from greybox_torch.mechanisms.matching import LEAST_MATCH, Match
+from greybox_torch.name_lists import listed
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
 from greybox_torch.training.learned_force import SignalCurve
@@ -32,6 +33,7 @@ def explanation_json(found: Trained, explained: Explanation, scores: Scores) -> 
         "band": band(explained),
         "members": explained.members,
         "curves": [_curve_json(curve, force_unit) for curve in explained.curves],
+        "beside": list(explained.own),
         "matches": [{"mechanism": m.law.name, "share": m.share, "parameters": m.values} for m in explained.matches],
         "terms": [_term_json(term) for term in explained.terms],
     }
@@ -67,7 +69,7 @@ def print_explanation(
             m.law.name,
             f"{100 * max(m.share, 0.0):.0f} %",
             "",
-            f"matches less than {LEAST_MATCH:g}" if m.share <= LEAST_MATCH else "",
+            _not_refitted(m, explained),
         ]
         for m in others
     ]
@@ -77,6 +79,28 @@ def print_explanation(
             ["law in the\nnetwork's place", "of the curve\nmatched", "held-out error beside\nthe network's", ""],
             rows,
         )
+        if explained.own:
+            console.print(Text(matched_beside(explained.own, adds)), soft_wrap=True)
+
+
+def matched_beside(own: Sequence[str], adds: str) -> str:
+    """What laws are matched with, where parameters of the model act where the network does."""
+    one = len(own) == 1
+    return (
+        f"Matched: of what another value of {listed(own)}, which act{'s' if one else ''} as a {adds} there as well, leaves of the curve. "
+        f"With a law in the network's place {'it is' if one else 'they are'} estimated anew."
+    )
+
+
+def _not_refitted(match: Match, explained: Explanation) -> str:
+    """Why a law has no held-out error."""
+    if not explained.refitted:
+        return ""
+    return (
+        f"not put there: matches less than {LEAST_MATCH:g}"
+        if match.share <= LEAST_MATCH
+        else "not put there: others match more"
+    )
 
 
 def open_sign(curves: Sequence[SignalCurve]) -> str:

@@ -100,5 +100,18 @@ def _print_choices(console: Console, found: Trained) -> None:
         ["free run on the held-out stretches", f"mean squared error\n{unit.strip()}".strip(), ""],
         choice_rows(found),
     )
+    if told := penalty_at_an_end(found):
+        console.print(Text(told), soft_wrap=True)
     if mostly_lost(found):
         console.print(Text(MOST_LOST, style="yellow"), soft_wrap=True)
+
+
+def penalty_at_an_end(found: Trained) -> str:
+    """A sentence where the chosen penalty is the least or the largest that was tried; "" elsewhere."""
+    polished = found.polished
+    if not (end := polished.at_an_end):
+        return ""
+    if end == "largest":
+        return "The chosen penalty is the largest that was tried: a larger one may predict as well."
+    lower = f"penalty={0.1 * found.settings.penalty:g}"
+    return f"The chosen penalty is the least that was tried: a lower one may predict better (`gt.TrainingSettings({lower})` begins there)."

@@ -20,7 +20,10 @@ from greybox_torch.report.tables import print_table
 _COLUMNS = ["port", "mechanism", "probability", "size [%]", "parameter", "value", "std", "unit"]
 
 
-SIZE = "size: the part of the error of the model without effects that leaving the effect out brings back; the parts need not add up"
+SIZE = (
+    "size: the part of the error of the model without effects, over windows whose start states are estimated, that leaving the effect out "
+    "brings back; the parts need not add up"
+)
 
 
 MOVED_BY = 0.1
@@ -105,9 +108,10 @@ def notes(verdict: Verdict) -> list[str]:
         *verdict.of_no_use,
         *of_validation,
         SIZE,
-        *verdict.made_up,
+        *verdict.about_sizes,
         *by_effect,
         *left,
+        *verdict.worse_outputs,
         *small,
         *verdict.at_bounds,
         *stopped,
@@ -144,7 +148,7 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
-    lines += [f"{head}: {effect.conversion}"] if effect.conversion else []
+    lines += [f"{head}: {effect.of_units}"] if effect.of_units else []
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     together = () if effect.one_of is None else effect.one_of.members

@@ -136,8 +136,8 @@ class Effect:
     at_bounds: tuple[str, ...] = ()
     """Which of its parameters ended at one of their bounds."""
 
-    conversion: str = ""
-    """That a gain is the factor of a unit that the model's equations may lack, a clause; "" elsewhere."""
+    of_units: str = ""
+    """That a gain is the factor of a unit that the model's equations may lack, or why there are none, a clause; "" elsewhere."""
     limited: tuple[str, ...] = ()
     """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
 
@@ -182,10 +182,9 @@ class Effect:
     @property
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the evidence has to know of its parameters and its probability; clauses."""
-        bounded = (
-            f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        )  # what that means is told beside the parameters
-        return tuple(filter(None, (self.conversion, bounded, *self.limited)))
+        # What a bound means is told beside the parameters.
+        bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
+        return tuple(filter(None, (self.of_units, bounded, *self.limited)))
 
     @property
     def headline(self) -> str:

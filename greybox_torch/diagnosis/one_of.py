@@ -132,8 +132,14 @@ PERSONS = ("coulomb", "stribeck")
 """Whose names are parts of the names of mechanisms."""
 
 
+SPOKEN = {"torque_saturation": "input saturation"}
+"""Mechanisms whose name says less than what they are: the input that saturates may be a flow, a voltage or a valve."""
+
+
 def in_words(mechanism: str) -> str:
     """A mechanism's name as words, the names of persons in capitals."""
+    if mechanism in SPOKEN:
+        return SPOKEN[mechanism]
     return " ".join(word.capitalize() if word in PERSONS else word for word in mechanism.split("_"))
 
 

@@ -1,4 +1,4 @@
-"""The sizes of several effects beside what these account for together."""
+"""The sizes of effects beside what these account for together."""
 
 from __future__ import annotations
 
@@ -7,11 +7,40 @@ from collections.abc import Sequence
 import numpy as np
 
 from greybox_torch.diagnosis.digits import digits
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.name_lists import listed
 
 SMALL_PARTS = 0.5
 """Share of what effects account for together below which the sum of their sizes is told to be small."""
+
+MORE_IS_LEFT = 0.1
+"""By how much sizes and what remains come to more than the whole mismatch for that to be explained."""
+
+
+def about_sizes(effects: Sequence[Effect], refinements: Sequence[Effect], left: float | None) -> tuple[str, ...]:
+    """Sentences where the sizes are much less than what the effects account for together, or more than what remains leaves room for.
+
+    Args:
+        left: share of the mismatch that all of them leave, None where that is not known.
+    """
+    small = small_parts([(e.mechanism, e.port, e.size) for e in (*effects, *refinements)], left)
+    if small or any(e.made_up_for for e in effects):
+        return small
+    return of_other_errors([e.size for e in effects], left)
+
+
+def of_other_errors(sizes: Sequence[float], left: float | None) -> tuple[str, ...]:
+    """A sentence where the sizes of effects say that more has gone than what remains leaves room for; none elsewhere.
+
+    Seen: "size 100 %", and three lines below "36 % of the mismatch remains".
+    """
+    if left is None or not np.isfinite([*sizes, left]).all() or sum(sizes) + left <= 1.0 + MORE_IS_LEFT:
+        return ()
+    return (
+        "Sizes and what remains come to more than 100 %, as they are of different errors: sizes of those over windows, whose start states "
+        "are estimated, and what remains of those of free runs, where errors last and add up.",
+    )
 
 
 def small_parts(effects: Sequence[tuple[str, str, float]], left: float | None) -> tuple[str, ...]:

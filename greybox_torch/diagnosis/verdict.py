@@ -13,10 +13,11 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.of_no_use import of_no_use
 from greybox_torch.diagnosis.one_of import spoken_at
-from greybox_torch.diagnosis.parts import small_parts
+from greybox_torch.diagnosis.parts import about_sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.without_effects import WithoutEffects
+from greybox_torch.diagnosis.worse_outputs import worse_outputs
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
 from greybox_torch.estimate.metrics import digits_between
 
@@ -170,16 +171,21 @@ class Verdict:
         return f"{start} {found}{self._gain()}."
 
     @property
-    def made_up(self) -> tuple[str, ...]:
-        """A sentence where the sizes of several effects are much less together than what these account for together."""
-        left = None if self.left is None else self.left.share
-        return small_parts([(e.mechanism, e.port, e.size) for e in (*self.effects, *self.refinements)], left)
+    def about_sizes(self) -> tuple[str, ...]:
+        """Sentences where the sizes are much less than what the effects account for together, or more than what remains leaves room for."""
+        share = None if self.left is None or self.of_no_use else self.left.share
+        return about_sizes(self.effects, self.refinements, share)
+
+    @property
+    def worse_outputs(self) -> tuple[str, ...]:
+        """A sentence for each output that the model with the effects simulates worse on the validation experiments."""
+        return worse_outputs(self.counted("refit"), self.counted("augmented"), self.traces) if self.effects else ()
 
     @property
     def of_no_use(self) -> tuple[str, ...]:
         """A sentence where something is missing and the model recommended simulates the validation experiments worse than a constant."""
-        effects = bool(self.effects)
-        return of_no_use(self.counted("augmented" if effects else "refit"), effects) if self.mismatch else ()
+        which = "augmented" if self.effects else "refit"
+        return of_no_use(self.counted(which), bool(self.effects)) if self.mismatch else ()
 
     @property
     def asked(self) -> tuple[str, ...]:
@@ -237,8 +243,7 @@ class Verdict:
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
             **({"question": self.question} if self.question else {}),
             "evidence": list(self.evidence),
-            **({"at_bounds": list(self.at_bounds)} if self.at_bounds else {}),
-            **({"short_validation": list(self.short_validation)} if self.short_validation else {}),
+            **{n: list(told) for n in ("at_bounds", "worse_outputs", "short_validation") if (told := getattr(self, n))},
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),
             "settings": changed_settings(self.settings, self.budget),

@@ -9,6 +9,7 @@ import numpy as np
 import torch
 
 from greybox_torch.linear_algebra import least_squares as linear_least_squares
+from greybox_torch.mechanisms.left_beside import LeftBeside
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.model import Signals
@@ -39,6 +40,7 @@ def matching_laws(
     force: np.ndarray,
     weight: np.ndarray,
     but: Collection[str] = (),
+    beside: np.ndarray | None = None,
 ) -> list[Match]:
     """Every law without memory that depends on no other signals, least-squares fitted to a learned force, best matches first.
 
@@ -47,10 +49,13 @@ def matching_laws(
         signals: the local signals (N,) that the learned force is a function of.
         force: the learned force (N,) there, and ``weight`` (N,) what each point counts.
         but: names of laws that are left out, since they are there already.
+        beside: forces (N, k) in any amounts of which may act as well, such as those that changes of the model's own parameters stand for.
+            What a law matches is then a share of what these leave.
     """
+    left = LeftBeside.of(beside, force, weight)
     found = []
     for law in laws_of(kind, around, signals, but):
-        trials = _trials(law.nearest(around, signals, force, weight), around, signals, force, weight)
+        trials = _trials(law.nearest(around, signals, left.force, weight), around, signals, force, left)
         if trials:
             found.append(max(trials, key=lambda match: match.share))
     return sorted(found, key=lambda match: -match.share)
@@ -84,28 +89,29 @@ def kinematic_laws(around: Surroundings, signals: Collection[str]) -> list[tuple
 
 
 def _trials(
-    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, left: LeftBeside
 ) -> list[Match]:
     """The law fitted in its linear parameters at every shape that it is looked for with, or in its shape where it has no amplitude."""
     if any(SHARE in probe.directions for probe in law.probes(around)):
-        return _shape_trials(law, around, signals, force, weight)
+        return _shape_trials(law, around, signals, force, left)
     results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
-    root, total = np.sqrt(weight), max(float((weight * force**2).sum()), 1e-300)
+    target = left.by(force)
+    total = max(float((target**2).sum()), 1e-300)
     for probe in law.probes(around):
-        columns = force_columns(law, around, signals, probe)
-        size = linear_least_squares(columns * root[:, None], force * root, rcond=1e-10)
+        columns = left.by(force_columns(law, around, signals, probe))
+        size = linear_least_squares(columns, target, rcond=1e-10)
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
-        share = 1.0 - float((weight * (force - columns @ size) ** 2).sum()) / total
+        share = 1.0 - float(((target - columns @ size) ** 2).sum()) / total
         results.append(
             Match(law, share, {**probe.values, **dict(zip(probe.directions, map(float, size), strict=True))})
         )
     if law.at_rest and results:
-        results.append(_placed(max(results, key=lambda match: match.share), around, signals, force, root))
+        results.append(_placed(max(results, key=lambda match: match.share), around, signals, force, left))
     return results
 
 
 def _placed(
-    match: Match, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, root: np.ndarray
+    match: Match, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, left: LeftBeside
 ) -> Match:
     """A match with what it has fitted to the curve: a stop begins where the force does, not where it was looked for."""
     from scipy.optimize import least_squares  # a fifth of a second to import, which only some diagnoses need
@@ -113,19 +119,19 @@ def _placed(
     free = [p for p in match.law.parameters(around) if not p.fixed and match.values.get(p.name, p.value) != 0.0]
     names, (low, high) = [p.name for p in free], np.array([p.bounds for p in free]).T
 
-    def left(z: np.ndarray) -> np.ndarray:
+    def lacking(z: np.ndarray) -> np.ndarray:
         values = {**match.values, **dict(zip(names, map(float, z), strict=True))}
-        return root * (force - law_force(match.law, around, signals, values))
+        return left.by(force - law_force(match.law, around, signals, values))
 
     start = np.array([match.values.get(p.name, p.value) for p in free])
     scale = np.maximum(np.abs(start), 1e-12)
-    found = least_squares(left, np.clip(start, low, high), bounds=(low, high), x_scale=scale, max_nfev=40)
-    share = 1.0 - float(np.sum(found.fun**2)) / max(float(np.sum((root * force) ** 2)), 1e-300)
+    found = least_squares(lacking, np.clip(start, low, high), bounds=(low, high), x_scale=scale, max_nfev=40)
+    share = 1.0 - float(np.sum(found.fun**2)) / max(float(np.sum(left.by(force) ** 2)), 1e-300)
     return Match(match.law, share, {**match.values, **dict(zip(names, map(float, found.x), strict=True))})
 
 
 def _shape_trials(
-    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, weight: np.ndarray
+    law: Mechanism, around: Surroundings, signals: Mapping[str, torch.Tensor], force: np.ndarray, left: LeftBeside
 ) -> list[Match]:
     """A law that no parameter is an amplitude of (a saturation, a dead band), fitted from every shape that it is looked for with.
 
@@ -137,20 +143,21 @@ def _shape_trials(
 
     free = [p for p in law.parameters(around) if not p.fixed]
     low, high = np.array([p.bounds for p in free]).T
-    root = np.sqrt(weight)
     signal = next(iter(signals.values())).numpy()
-    alone = float(np.sum((root * force) ** 2))
-    after_gain = float(np.sum(_without(root * signal, root * force) ** 2))
+    alone = float(np.sum(left.by(force) ** 2))
+    after_gain = float(np.sum(_without(left.by(signal), left.by(force)) ** 2))
 
-    def left(z: np.ndarray) -> np.ndarray:
+    def lacking(z: np.ndarray) -> np.ndarray:
         drawn = law_force(law, around, signals, dict(zip((p.name for p in free), map(float, z), strict=True)))
-        return _without(root * (signal + drawn), root * (force - drawn))
+        return _without(left.by(signal + drawn), left.by(force - drawn))
 
     results = []
     for probe in law.probes(around):
         start = np.array([probe.values.get(p.name, p.value) for p in free])
         inside = np.clip(start, low + 1e-9 * np.abs(high), high - 1e-9 * np.abs(high))
-        found = least_squares(left, inside, bounds=(low, high), x_scale=np.maximum(np.abs(inside), 1e-12), max_nfev=40)
+        found = least_squares(
+            lacking, inside, bounds=(low, high), x_scale=np.maximum(np.abs(inside), 1e-12), max_nfev=40
+        )
         explained = after_gain - float(np.sum(found.fun**2))
         share = explained / after_gain if after_gain > LEAST_BESIDE_GAIN * alone else 0.0
         results.append(Match(law, share, dict(zip((p.name for p in free), map(float, found.x), strict=True))))

@@ -54,8 +54,12 @@ def added_to(model: GreyBoxModel, port: Port) -> str | None:
     return None
 
 
-def divided_by(model: GreyBoxModel, port: Port) -> Parameter | None:
-    """The parameter by which a port's force is divided in that rate, a capacity; None where that is not one parameter alone."""
+def divided_by(model: GreyBoxModel, port: Port, factor: float = 1.0) -> Parameter | None:
+    """The parameter by which a port's force is divided in that rate, a capacity; None where that is not one parameter alone.
+
+    Args:
+        factor: by which it is multiplied besides, as where the level has another unit than the model reckons in.
+    """
     if balanced_state(model, port) is None:
         return None
     raised = _raised(model, port, {})
@@ -64,11 +68,11 @@ def divided_by(model: GreyBoxModel, port: Port) -> Parameter | None:
         for q in model.declared_parameters
         if not torch.allclose(_raised(model, port, {q.name: _changed(q.value)}), raised, rtol=1e-9)
     ]
-    if len(acting) != 1 or not _is_one(raised * acting[0].value):
+    if len(acting) != 1 or not _is_one(raised * acting[0].value / factor):
         return None
     (one,) = acting
     other = _changed(one.value)
-    return one if _is_one(_raised(model, port, {one.name: other}) * other) else None
+    return one if _is_one(_raised(model, port, {one.name: other}) * other / factor) else None
 
 
 def _changed(value: float) -> float:

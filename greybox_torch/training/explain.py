@@ -14,12 +14,19 @@ from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.shifted_states import shifted_state
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.matching import Match, kinematic_laws, matching_laws, worth_a_refit
+from greybox_torch.mechanisms.matching import (
+    Match,
+    kinematic_laws,
+    law_force,
+    matching_laws,
+    worth_a_refit,
+)
 from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.model import Coupling
 from greybox_torch.training.hybrid import port_named
 from greybox_torch.training.learned_force import LearnedForce, SignalCurve, curves_of, force_at, learned_force
 from greybox_torch.training.named_term import NamedTerm, on_all_samples, refitted_term
+from greybox_torch.training.own_parameters import OwnParameters, own_parameters
 from greybox_torch.training.polish import WORTH
 from greybox_torch.training.trained import Trained
 
@@ -33,7 +40,8 @@ class Explanation:
 
     ``curves`` over each of its signals, with their shares; ``members`` how many trainings the band is from: of one it is the parameters'
     covariance alone, of several what they differ by is added. ``matches`` compares every law of the library that depends on these
-    signals alone with the learned force; ``terms`` are the best of them in the network's place, best on held-out stretches first.
+    signals alone with what the model's ``own`` parameters, which act where the network does, leave of the learned force; ``terms`` are the
+    best of them in the network's place, best on held-out stretches first, ``refitted`` says whether any were asked there.
     ``memories`` are the time constants, in s, of a network with hidden states, which no curve stands for.
     ``term`` is the one that makes the network needless, estimated on all samples as ``result``; None where none does.
     """
@@ -45,6 +53,8 @@ class Explanation:
     term: NamedTerm | None = None
     result: Estimation | None = None
     memories: tuple[float, ...] = ()
+    own: tuple[str, ...] = ()
+    refitted: bool = True
 
     @property
     def sentence(self) -> str:
@@ -64,8 +74,14 @@ class Explanation:
         if present:
             best = present[0]
             return (
-                f"No law of the library does what the network does: with the closest, {best.attachment.prefix}, the mean squared error on "
-                f"the held-out stretches is {_told(best.lost)}. {KEEP}"
+                f"No law that was put in the network's place does what it does: with the closest, {best.attachment.prefix}, the mean "
+                f"squared error on the held-out stretches is {_told(best.lost)}. {KEEP}"
+            )
+        nearest = next(iter(worth_a_refit(self.matches)), None)
+        if nearest is not None and not self.refitted:
+            return (
+                f"Laws were compared with the learned curve alone: the nearest, {nearest.law.name}, matches {100 * nearest.share:.0f} % of "
+                "it. Whether one does what the network does is not known before it is put in its place (`refit`)."
             )
         return f"No law of the library without memory comes near to what the network has learned. {KEEP}"
 
@@ -102,13 +118,14 @@ def explain(
     members = [first, *(_beside(first, found, other) for other in others)]
     network = found.hybrid.network
     curves = curves_of(members, found.hybrid.surroundings[network.port].units)
-    matches = tuple(_matches(found, first))
-    terms = _terms(found, matches, told) if refit else ()
+    own = own_parameters(found, first.signals)
+    matches = tuple(_matches(found, first, own))
+    terms = _terms(found, matches, first, own, told) if refit else ()
     term = needless(terms, found)
     if term is not None:
         told(f"explaining: {term.attachment.prefix} on all samples")
     result = None if term is None else on_all_samples(term, found)
-    return Explanation(curves, len(members), matches, terms, term, result)
+    return Explanation(curves, len(members), matches, terms, term, result, own=own.names, refitted=refit)
 
 
 def _memories(found: Trained) -> tuple[float, ...]:
@@ -136,27 +153,36 @@ def _beside(first: LearnedForce, found: Trained, other: Trained) -> LearnedForce
     return LearnedForce(first.signals, force, slope, learned_force(other).covariances)
 
 
-def _matches(found: Trained, learned: LearnedForce) -> list[Match]:
+def _matches(found: Trained, learned: LearnedForce, own: OwnParameters) -> list[Match]:
     physics, network = found.physics.problem.model, found.hybrid.network
     there = [a for a in physics.attachments if a.port == network.port] if isinstance(physics, AugmentedModel) else []
     around, kind = found.hybrid.surroundings[network.port], port_named(physics, network.port).kind
     signals = {name: torch.tensor(np.ascontiguousarray(values)) for name, values in learned.signals.items()}
     weight = np.ones(len(learned.force))
-    return matching_laws(kind, around, signals, learned.force, weight, {a.mechanism.name for a in there})
+    return matching_laws(kind, around, signals, learned.force, weight, {a.mechanism.name for a in there}, own.force)
 
 
-def _terms(found: Trained, matches: Sequence[Match], told: Callable[[str], None]) -> tuple[NamedTerm, ...]:
-    """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first."""
+def _terms(
+    found: Trained, matches: Sequence[Match], learned: LearnedForce, own: OwnParameters, told: Callable[[str], None]
+) -> tuple[NamedTerm, ...]:
+    """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first.
+
+    Each begins with the model's own parameters where they do what the law leaves of the learned force.
+    """
     physics, network = found.physics.problem, found.hybrid.network
     beside = found.result.problem.values_by_name
     beside = {name: beside[name] for name in physics.names}
-    candidates = [(attach(physics.model, network.port, m.law), [m.values], m.share) for m in worth_a_refit(matches)] + [
-        (attachment, sizes, None) for attachment, sizes in _kinematic(found)
-    ]
+    around = found.hybrid.surroundings[network.port]
+    signals = {name: torch.tensor(np.ascontiguousarray(values)) for name, values in learned.signals.items()}
+    candidates: list[tuple[Attachment, list[dict[str, float]], float | None, dict[str, float]]] = []
+    for m in worth_a_refit(matches):
+        moved = own.taking_over(learned.force - law_force(m.law, around, signals, m.values))
+        candidates.append((attach(physics.model, network.port, m.law), [m.values], m.share, moved))
+    candidates += [(attachment, sizes, None, {}) for attachment, sizes in _kinematic(found)]
     terms = []
-    for attachment, sizes, share in candidates:
+    for attachment, sizes, share, moved in candidates:
         told(f"explaining: {attachment.prefix} instead of the network")
-        starts = [{**beside, **{f"{attachment.prefix}.{n}": v for n, v in values.items()}} for values in sizes]
+        starts = [{**beside, **moved, **{f"{attachment.prefix}.{n}": v for n, v in values.items()}} for values in sizes]
         term = refitted_term(found, attachment, starts, share)
         terms += [] if term is None else [term]
     return tuple(sorted(terms, key=lambda term: term.held_out))

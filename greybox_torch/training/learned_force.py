@@ -74,20 +74,29 @@ def visited_signals(found: Trained, elsewhere: Problem | None = None, most: int 
         elsewhere: other experiments of the hybrid, from their start states.
         most: samples, spread evenly; by default all.
     """
+    problem = found.result.problem if elsewhere is None else elsewhere
+    model = problem.model
+    assert isinstance(model, AugmentedModel)
+    states, inputs = visited(found, elsewhere, most)
+    x, u = model.named_signals(states, inputs)
+    local = model.local_signals(found.hybrid.network, x, u, problem.parameter_tensors)
+    needs = found.hybrid.network.mechanism.needs
+    return {n: np.broadcast_to(np.asarray(local[n], dtype=float), states.shape[1:]) for n in needs}
+
+
+def visited(
+    found: Trained, elsewhere: Problem | None = None, most: int | None = None
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """States (n_x, N) and inputs (n_u, N) along that free run; arguments as for :func:`visited_signals`."""
     problem, simulator = found.result.problem, found.course.simulator
     if elsewhere is not None:
         problem, simulator = elsewhere, simulator.with_substeps(found.result.substeps)
-    model = problem.model
-    assert isinstance(model, AugmentedModel)
     records = problem.driving_records
     states = np.concatenate(visited_states(problem, simulator))
     spans = [records.span(e) for e in range(len(records.lengths))]
     index = np.concatenate([np.arange(span.start, span.stop) for span in spans])
     kept = slice(None, None, 1 if most is None else max(1, -(-len(index) // most)))
-    x, u = model.named_signals(torch.as_tensor(states[kept].T), torch.as_tensor(records.u[:, index[kept]]))
-    local = model.local_signals(found.hybrid.network, x, u, problem.parameter_tensors)
-    shape = index[kept].shape
-    return {n: np.broadcast_to(np.asarray(local[n], dtype=float), shape) for n in found.hybrid.network.mechanism.needs}
+    return torch.as_tensor(states[kept].T), torch.as_tensor(records.u[:, index[kept]])
 
 
 def force_at(found: Trained, signals: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:

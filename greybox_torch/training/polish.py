@@ -59,6 +59,13 @@ class Polished:
     optimum: Optimum[None] | None
     judged: Problem | None = None
 
+    @property
+    def at_an_end(self) -> str:
+        """Which of the penalties tried was chosen, "least" or "largest", where none beyond it was; "" elsewhere."""
+        tried = sorted(choice.weight for choice in self.choices if choice.weight is not None)
+        ends = dict.fromkeys(tried[:1], "least") | dict.fromkeys(tried[1:][-1:], "largest")
+        return "" if self.chosen.weight is None else ends.get(self.chosen.weight, "")
+
 
 @dataclass(frozen=True)
 class PenalisedRun:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_outputs, ran_away
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs, ran_away
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.problem import make_problem
 from tests.api.motor import Motor
@@ -78,6 +78,21 @@ def test_an_output_that_is_lost_behind_a_good_mean_is_told() -> None:
     assert two is not None and two.startswith("y1 (-1 %) and y2 (-2 %) are simulated")
     assert of(95.0, 3.0) is None and of(10.0, -90.0) is None, "of all that is lost the other sentence speaks"
     assert of(95.0, -np.inf) is None
+
+
+def test_an_output_that_is_lost_in_one_experiment_is_told() -> None:
+    """Seen: a current of the other sign in one file, -120 % there and 34 % in validation, and no word of it."""
+
+    def of(*told: tuple[str, float, float], role: str = "estimation") -> str | None:
+        roles = [role] * (len(told) - 1) + ["validation"]
+        return lost_in_one({"refit": [Score(n, r, "current", f, e) for (n, f, e), r in zip(told, roles, strict=True)]})
+
+    others = (("lauf2", 30.8, 4.5), ("lauf3", 34.0, 3.86))
+    told = of(("lauf1", -119.7, 12.4), *others)
+    assert told is not None and "current in lauf1 (-120 %, in lauf3 34 %)" in told and "another sign, unit" in told
+    assert of(("lauf1", -10.0, 4.6), *others) is None, "as large an error as elsewhere: little moved there"
+    assert of(("lauf1", -119.7, 12.4), ("lauf3", -50.0, 3.9)) is None, "lost everywhere"
+    assert of(("lauf1", -119.7, 12.4), *others, role="validation") is None, "what is lost in validation is judged there"
 
 
 def test_parameters_that_ran_away_are_told() -> None:

@@ -115,8 +115,22 @@ def test_sizes_that_are_small_as_others_make_up_for_each_are_explained() -> None
         told.startswith("The sizes of backlash at gear_spring and sensor lag at gear_spring come to 18 %")
         and "98 %" in told
     )
-    assert Effects.of(both).made_up == (told,)  # type: ignore[union-attr]
-    assert not replace(both, effects=(replace(BACKLASH, size=0.9),)).made_up and not verdict(BACKLASH).made_up
+    assert Effects.of(both).about_sizes == (told,)  # type: ignore[union-attr]
+    assert not replace(both, effects=(replace(BACKLASH, size=0.9),)).about_sizes and not verdict(BACKLASH).about_sizes
+
+
+def test_a_size_beside_more_that_remains_is_explained() -> None:
+    """Seen: "size 100 %", "explains 100 % of the repeatable validation error", and three lines below "36 % of the mismatch remains"."""
+    whole = replace(
+        verdict(replace(BACKLASH, size=1.0)), left=Left(0.36, 5.4, "36 % of the mismatch remains in free runs.")
+    )
+    (told,) = whole.about_sizes
+    assert told in notes(whole) and "windows, whose start states are estimated" in told and "free runs" in told
+    shown = Effects.of(whole)
+    assert shown is not None and (shown.cards[0].size, shown.cards[0].explained) == ("100 %", "64 %")
+    assert not replace(whole, left=Left(0.05, 1.3, "5 % remains.")).about_sizes
+    for left in (None, Left(1.2, 5.4, "As much remains.")):
+        assert Effects.of(replace(whole, left=left)).cards[0].explained == ""  # type: ignore[union-attr]
 
 
 def test_of_many_candidates_their_number_is_told() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from greybox_torch.diagnosis.one_of import Alternative, OneOf
+from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 
 LAG, INPUT, DELAY = ("sensor", "sensor_lag"), ("actuator", "input_lag"), ("actuator", "input_delay")
 
@@ -36,3 +36,8 @@ def test_members_of_unequal_share_are_not_told_as_undecided(members, told, in_br
         "some time passes", 0.87, tuple(Alternative(port, law, share) for (port, law), share in members.items())
     )
     assert found.told == told and found.in_brief == in_brief
+
+
+def test_an_input_that_saturates_is_called_by_what_it_is() -> None:
+    """Seen: "torque saturation at actuator.inflow", for a flow."""
+    assert spoken_at("torque_saturation", "actuator.inflow") == "input saturation at actuator.inflow"

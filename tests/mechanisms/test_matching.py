@@ -85,6 +85,19 @@ def test_weights_count() -> None:
     assert found["constant_bias"].share == pytest.approx(1.0)
 
 
+def test_a_force_beside_is_left_out_of_the_comparison() -> None:
+    """A curve of drag and of something else is drag alone where that something may act in any amount."""
+    other = np.sqrt(np.abs(SPEED.numpy()) + 1.0)[:, None]
+    force = law_force(LIBRARY["quadratic_drag"](), AROUND, {"speed": SPEED}, {"c": 0.3}) + 8.0 * other[:, 0]
+    shares = [
+        {m.law.name: m for m in matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY, beside=beside)}
+        for beside in (None, other)
+    ]
+    alone, beside = (found["quadratic_drag"] for found in shares)
+    assert alone.share < LEAST_MATCH and beside.share == pytest.approx(1.0)
+    assert beside.values["c"] == pytest.approx(0.3)
+
+
 def test_kinematic_laws() -> None:
     found = {law.name: sizes for law, sizes in kinematic_laws(AROUND, {"deflection", "rate"})}
     assert list(found) == ["backlash"]

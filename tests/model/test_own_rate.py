@@ -77,6 +77,33 @@ def test_a_force_divided_by_a_capacity_has_the_unit_of_what_that_stores_per_seco
     assert around["room"].force_unit == force
 
 
+@pytest.mark.parametrize(
+    ("level", "unit", "factor", "force"),
+    [
+        ("mm", "m^2", 1000.0, "m^3/s"),
+        ("mm", "m^2", 1.0, ""),
+        ("m", "m^2", 1000.0, ""),
+        ("bar", "m^3/Pa", 1e-5, "m^3/s"),
+        ("cm", "m^2", 100.0, "m^3/s"),
+    ],
+)
+def test_a_rate_in_another_unit_than_the_model_reckons_in(level: str, unit: str, factor: float, force: str) -> None:
+    """Seen: a level in mm and flows in m^3/s; the flow of an overflow had no unit, in the table and on the axis."""
+
+    class Tank(Room):
+        states: ClassVar = [State("air", level), State("water", "m")]
+        parameters: ClassVar = [Parameter("A", 0.12, unit=unit)]
+
+        def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+            return {"air": factor * (u.heat + port.room) / p.A, "water": port.tank - 0.1 * x.water}
+
+    model = Tank()
+    recording = gt.Recording.from_arrays("run", {"heat": np.ones(20), "air": np.ones(20)}, sample_time=1.0)
+    problem = make_problem(gt.DataSet([recording]), model, (recording,))
+    around = surroundings_along(model, problem, np.ones((problem.records.u.shape[1], 2)))
+    assert around["room"].force_unit == force
+
+
 def test_a_force_divided_by_more_than_one_parameter_is_divided_by_none_of_them() -> None:
     class Block(Room):
         parameters: ClassVar = [Parameter("C", 500.0, unit="J/(kg K)"), Parameter("m", 1.0, unit="kg")]

@@ -26,6 +26,7 @@ from greybox_torch.diagnosis.describe.profiles import (
 )
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.describe.why_limited import why_limited
+from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
@@ -150,7 +151,8 @@ def _effect(
         equation=equation(attachment, site, around, named, list(parameters)),
         at_bounds=tuple(n.removeprefix(own) for n in at_bounds(final.problem) if n.startswith(own)),
         form=mechanism.nature if mechanism.free else "",
-        conversion=conversion_as_gain(attachment, around, parameters),
+        of_units=conversion_as_gain(attachment, around, parameters)
+        or without_unit(attachment, site, around, parameters),
         limited=why_limited(uncapped, limit, gain, study.settings),
     )
 

@@ -8,14 +8,12 @@ import numpy as np
 
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.beside_noise import beside_noise, why_negligible
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.describe.unit_of_errors import unit_of_errors
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
-from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
@@ -26,6 +24,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.diagnosis.verdict import STOPPED
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.name_lists import listed
 
 NEARLY_ALL = 0.999
 """Share that an effect removes from which its interval would be 100.0 to 100.0 %."""
@@ -52,7 +51,11 @@ def sentences(
         + ("; with the effects: " + ", ".join(f"{np.sqrt(f.mean_square):.3g}" for f in final) if effects else "")
         + f"{unit_of_errors(study)}.",
     ]
-    lines += [_noise(study, state), *_negligible(study, state), *detection_sentences(detected, bool(effects))]
+    lines += [
+        beside_noise(study, state.current),
+        *why_negligible(study, state.plain),
+        *detection_sentences(detected, bool(effects)),
+    ]
     lines += [_step_sentence(done, study, state.plain) for done in state.steps]
     asked = state.memory_step
     lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
@@ -173,7 +176,7 @@ def ceiling_sentence(effect: Effect) -> str:
 
 
 def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[str]:
-    """What the errors of the free runs show, where that is clearest, and which recordings look as if made under feedback."""
+    """What the errors of the free runs show, where that is clearest, and in which recordings the input may answer to the output."""
     lines = []
     if detected:
         lines.append(
@@ -186,12 +189,12 @@ def detection_sentences(detected: Sequence[Detection], effects: bool) -> list[st
         )
     answering = [d for d in detected if d.feedback]
     if answering:
+        named = list(dict.fromkeys(d.experiment for d in answering))
         clearest, band = max(answering, key=lambda d: d.later.ratio), max(d.band for d in answering)
         lines.append(
-            "Recorded under feedback, or the input is recorded later than it acts (steps between samples): "
-            f"{', '.join(dict.fromkeys(d.experiment for d in answering))} (what is new in the input is correlated with errors before it: "
-            f"{_size(clearest.later, 'correlation')}). Coherence above {band:.3g} Hz, where the input is hardly excited, is not counted as "
-            "evidence."
+            f"What is new in the input is correlated with errors before it, in {listed(named)} ({_size(clearest.later, 'correlation')}): "
+            "it may be recorded under feedback, or later than it acts (steps between samples), or samples of a sensor may be wrong (stuck, "
+            f"clipped, missing). Coherence above {band:.3g} Hz, where the input is hardly excited, is not counted as evidence."
         )
     return lines
 
@@ -222,28 +225,6 @@ def _changed(before: Largest, after: Largest, what: str, effects: bool, place: s
 
 def _size(largest: Largest, what: str) -> str:
     return f"largest {what} {largest.told}, 99 % bound {largest.bound:.2g}"
-
-
-def _noise(study: Study, state: SearchState) -> str:
-    times = times_noise(study.problem, state.current, study.settings)
-    over = f"Over the windows that show it best the error is {digits(times)} times the noise"
-    shown = f"{over} that the recordings' high-frequency floor shows"
-    if times > study.settings.above_noise:
-        return shown + ": more than noise is left."
-    return shown + (
-        "." if floor_known(study.problem, study.settings) else ", an upper bound, as part of that is motion."
-    )
-
-
-def _negligible(study: Study, state: SearchState) -> list[str]:
-    """Why nothing was looked for."""
-    if not negligible(study, state.plain):
-        return []
-    return [
-        f"Beyond the noise it is {digits(100 * mismatch_share(state.plain, study.settings))} % of the outputs' spread. A shift in time by "
-        f"{100 * study.settings.least_shift:.2g} % of a sampling interval, or another simulator of the same model, may do as much: "
-        "nothing was looked for."
-    ]
 
 
 def _name(attachment: Attachment) -> str:

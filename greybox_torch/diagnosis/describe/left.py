@@ -40,7 +40,7 @@ def what_is_left(
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
     how = (
-        "the error is not white: steps of a sensor, the timing of samples and start states leave as much"
+        "the error is not white: steps of a sensor, the timing of samples or start states may leave as much"
         if times < noise and (beyond or coloured)
         else "windows whose start states are estimated leave hardly more than noise: nothing else is missing that they show"
         if parts
@@ -64,7 +64,7 @@ def what_is_left(
     whole = "The model as it stands is recommended"
     if effects:
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
-        whole = f"{part} % of the mismatch remains" if shown else "As much remains as without it"
+        whole = f"{part} % of the mismatch remains in free runs" if shown else "As much remains as without it"
         whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
         if shown and fit < 0.0:
             how_well = f"have a mean fit of {fit:.1f} %, worse than a constant" if np.isfinite(fit) else "overflow"

@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order, sound
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
 from greybox_torch.diagnosis.select.bent_model import unbent_first
@@ -72,8 +72,16 @@ def forward_step(
 def take_best(
     study: Study, state: SearchState, screened: Screened, ranked: Sequence[RankedCandidate]
 ) -> Stage[SearchState]:
-    """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
-    return (yield from _take(study, state, screened, compare(study, state.current, screened, ranked)))
+    """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely.
+
+    A law that polishing has led to values which say nothing of the machine stands with those that it had before, if they do: beside what is
+    still missing, values that are nobody's may go farther. Seen: a drive's limit of 1.15 N m, beside the drag of its rotor that was missing
+    as well, led from 1.5 to the end of what it may be; the two were told as an unknown effect at the actuator (0.97).
+    """
+    compared = compare(study, state.current, screened, ranked)
+    before = {id(r.candidate): r for r in ranked if sound(study, r)}
+    kept = [r if sound(study, r) else before.get(id(r.candidate), r) for r in compared.ranked]
+    return (yield from _take(study, state, screened, replace(compared, ranked=in_order(kept, study.settings))))
 
 
 def _in_another_valley(study: Study, state: SearchState, compared: Comparison) -> bool:

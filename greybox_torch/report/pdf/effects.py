@@ -21,7 +21,7 @@ def draw_effects(sheets: Sheets, verdict: Verdict) -> None:
     for card in told.cards:
         _card(sheets, card)
         sheets.gap(10.0)
-    for sentence in told.made_up:
+    for sentence in told.about_sizes:
         sheets.text(sentence, 8.0, colour=QUIET)
         sheets.gap(4.0)
 
@@ -43,12 +43,11 @@ def _card(sheets: Sheets, card: Card) -> None:
         sheets.text(f"{told}.", 8.0, colour=QUIET)
         sheets.gap(4.0)
     facts = [("Law", card.equation)] if card.equation else []
-    facts += (
-        [("Size", f"left out, it brings back {card.size} of the error of the model without effects")]
-        if card.size
-        else []
-    )
-    facts += [("Explains", f"{card.explained} of the repeatable validation error")] if card.explained else []
+    windows = "over windows whose start states are estimated"
+    brought = f"left out, it brings back {card.size} of the error of the model without effects, {windows}"
+    facts += [("Size", brought)] if card.size else []
+    explained = f"{card.explained} of the mismatch in free runs of the validation experiments"
+    facts += [("Explains", explained)] if card.explained else []
     facts += [("Ceiling", f"{card.ceiling} of the gain of the best free curve in its place")] if card.ceiling else []
     facts += [("Where", card.where)] if card.where else []
     facts += [("Depends on", ", ".join(card.signals))] if card.signals else []

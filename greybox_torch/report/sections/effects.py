@@ -49,8 +49,8 @@ class Share:
 @dataclass(frozen=True)
 class Card:
     """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``
-    and a sentence (``alike``). ``explained`` is empty beside further effects and refinements, among which the explained error is divided by
-    the order of the search.
+    and a sentence (``alike``). ``explained``: the share of the mismatch that free runs of the validation experiments leave no more; empty
+    beside further effects and refinements, with which it is shared, and where free runs say nothing of it.
     """
 
     title: str
@@ -91,17 +91,24 @@ class Effects:
     """The cards of all effects."""
 
     cards: tuple[Card, ...]
-    made_up: tuple[str, ...] = ()
+    about_sizes: tuple[str, ...] = ()
     template: str = "effects.html.j2"
 
     @classmethod
     def of(cls, verdict: Verdict) -> Effects | None:
-        alone = len(verdict.effects) + len(verdict.refinements) == 1
-        cards = (_card(e, responses(verdict, e), alone) for e in verdict.shown_effects)
-        return cls(tuple(cards), verdict.made_up) if verdict.effects else None
+        cards = (_card(e, responses(verdict, e), _explained(verdict)) for e in verdict.shown_effects)
+        return cls(tuple(cards), verdict.about_sizes) if verdict.effects else None
 
 
-def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
+def _explained(verdict: Verdict) -> str:
+    """What the only effect explains of the mismatch in free runs: the rest of what remains (section "What remains")."""
+    left, alone = verdict.left, len(verdict.effects) + len(verdict.refinements) == 1
+    if left is None or not alone or not left.share < 1.0 or verdict.of_no_use or verdict.effects[0].made_up_for:
+        return ""
+    return text.percent(1.0 - left.share)
+
+
+def _card(effect: Effect, shown: Responses | None, explained: str) -> Card:
     unknown, whole = effect.mechanism == "unknown", effect.one_of
     return Card(
         title=_unknown_title(effect) if unknown else text.first_capital(text.mechanism(effect.mechanism)),
@@ -114,7 +121,7 @@ def _card(effect: Effect, shown: Responses | None, alone: bool) -> Card:
         signals=effect.signals,
         equation=in_lines(effect.equation),
         size=text.percent(effect.size) if math.isfinite(effect.size) else "",
-        explained=text.percent(effect.explained) if alone else "",
+        explained=explained,
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
         bounded=effect.bounded,

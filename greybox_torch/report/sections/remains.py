@@ -20,7 +20,7 @@ class Refinement:
 
 @dataclass(frozen=True)
 class Remains:
-    """The sentence about what is left, and the rows of refinements."""
+    """The sentences about what is left, and the rows of refinements."""
 
     sentence: str
     refinements: tuple[Refinement, ...]
@@ -34,4 +34,4 @@ class Remains:
             Refinement(text.words(e.mechanism), e.port, f"{digits(100 * e.size)} %")
             for e in sorted(verdict.refinements, key=lambda e: -e.size)
         )
-        return cls(verdict.left.sentence, tuple(rows))
+        return cls(" ".join((verdict.left.sentence, *verdict.worse_outputs)), tuple(rows))

@@ -28,8 +28,8 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains: in Validation 1 the free run's error is 110 times the noise that the recordings' highest "
-        "frequencies show. "
+        "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise that the recordings' "
+        "highest frequencies show. "
         f"On the experiments that it was estimated from, {words}"
     )
 
@@ -56,7 +56,7 @@ def test_much_that_remains_and_is_noise_is_told_as_such(stub) -> None:
     """Seen: "26 % of the mismatch remains … 1.2 times the noise", which read as a contradiction."""
     left = what_is_left(stub(left=lambda effects: (0.26, 1.2, "Run 2")), [], True, 1.3)
     assert left.sentence.startswith(
-        "26 % of the mismatch remains, most of it noise: in Run 2 the free run's error is 1.2 times"
+        "26 % of the mismatch remains in free runs, most of it noise: in Run 2 the free run's error is 1.2 times"
     )
     for share, times in ((0.26, 1.5), (0.26, np.nan), (0.01, 1.2)):
         assert (
@@ -75,7 +75,7 @@ def test_where_noise_is_not_known(stub) -> None:
 @pytest.mark.parametrize(
     ("times", "coloured", "words"),
     [
-        (1.03, True, "not white: steps of a sensor, the timing of samples and start states leave as much."),
+        (1.03, True, "not white: steps of a sensor, the timing of samples or start states may leave as much."),
         (1.03, False, "white, as noise is."),
         (1.4, True, "correlated with past inputs, so that part of it is repeatable."),
     ],
@@ -109,7 +109,7 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
     [
         (-73.0, "free runs of the validation experiments have a mean fit of -73.0 %, worse than a constant: in Run 2"),
         (-np.inf, "free runs of the validation experiments overflow: in Run 2"),
-        (12.0, "1.7 % of the mismatch remains: in Run 2"),
+        (12.0, "1.7 % of the mismatch remains in free runs: in Run 2"),
     ],
 )
 def test_little_of_a_mismatch_of_runs_that_are_lost_is_not_told_as_little(stub, fit: float, told: str) -> None:

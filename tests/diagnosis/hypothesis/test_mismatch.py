@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.describe.evidence import _negligible
+from greybox_torch.diagnosis.describe.beside_noise import why_negligible
 from greybox_torch.diagnosis.hypothesis import mismatch as module
 from greybox_torch.diagnosis.hypothesis.mismatch import least_mismatch, mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
@@ -55,9 +55,9 @@ def test_what_is_negligible_is_said_and_sure(dead_zone_search) -> None:
     settings = replace(found.study.settings, least_shift=1.0, most_of_shift=1.0, least_mismatch=1.0)
     study = replace(found.study, settings=settings)
     assert negligible(study, found.plain) and not negligible(found.study, found.plain)
-    (sentence,) = _negligible(study, found.state)
+    (sentence,) = why_negligible(study, found.state.plain)
     assert sentence.endswith("nothing was looked for.")
-    assert not _negligible(found.study, found.state)
+    assert not why_negligible(found.study, found.state.plain)
     assert confidence(study, found.state, (), True, None, 30.0) == settings.confidence_nothing
 
 

@@ -7,12 +7,12 @@ import numpy as np
 
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
-from greybox_torch.diagnosis.verdict import Verdict
+from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.report.sections.effects import Effects
 
 
 def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
-    effects = Effects.of(of_kind("found"))
+    effects = Effects.of(replace(of_kind("found"), left=Left(0.03, 1.2, "3 % of the mismatch remains in free runs.")))
     assert effects is not None
     (card,) = effects.cards
     assert (card.title, card.port, card.explained, card.unknown) == ("Backlash", "gear_spring", "97 %", False)

@@ -1,0 +1,38 @@
+"""What is left of a learned force, and of laws, where forces in any amounts may act beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+INDEPENDENT = 1e-6
+"""Singular values below this share of the largest are taken for zero."""
+
+
+@dataclass(frozen=True)
+class LeftBeside:
+    """``basis`` (N, k) spans the forces beside, None where there are none, weighted by ``root`` (N,), the roots of the points' weights;
+    ``force`` (N,), without weights, is what they leave of the learned one.
+    """
+
+    root: np.ndarray
+    basis: np.ndarray | None
+    force: np.ndarray
+
+    @staticmethod
+    def of(beside: np.ndarray | None, force: np.ndarray, weight: np.ndarray) -> LeftBeside:
+        """Of a learned ``force`` (N,) beside forces (N, k)."""
+        root = np.sqrt(weight)
+        if beside is None or not beside.any():
+            return LeftBeside(root, None, force)
+        columns = beside * root[:, None]
+        columns = columns / np.maximum(np.linalg.norm(columns, axis=0), 1e-300)
+        vectors, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+        whole = LeftBeside(root, vectors[:, sizes > INDEPENDENT * sizes[0]], force)
+        return LeftBeside(root, whole.basis, np.where(root > 0, whole.by(force) / np.where(root > 0, root, 1.0), 0.0))
+
+    def by(self, forces: np.ndarray) -> np.ndarray:
+        """What they leave of forces (N,) or (N, m), weighted."""
+        weighted = forces * (self.root if forces.ndim == 1 else self.root[:, None])
+        return weighted if self.basis is None else weighted - self.basis @ (self.basis.T @ weighted)

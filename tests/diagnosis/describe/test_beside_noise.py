@@ -1,0 +1,18 @@
+"""An error beside the noise is told so that it can be read once."""
+
+from __future__ import annotations
+
+from greybox_torch.diagnosis.describe.beside_noise import told_beside_noise
+
+
+def test_what_is_noise_and_what_is_motion_is_told_apart() -> None:
+    """Seen: "0.21 times the noise that the recordings' high-frequency floor shows, an upper bound, as part of that is motion"."""
+    start = "Over the windows of the length that leaves most, the error is 0.21 times "
+    assert told_beside_noise(0.21, more=False, known=False) == (
+        f"{start}what the recordings show at their highest frequencies. Part of that is motion, so the noise is less, by how much does not "
+        "show."
+    )
+    noise = "the noise that the recordings' highest frequencies show"
+    assert told_beside_noise(0.21, more=False, known=True) == f"{start}{noise}."
+    for known in (True, False):
+        assert told_beside_noise(1.7, more=True, known=known).endswith(f"1.7 times {noise}: more than noise is left.")
