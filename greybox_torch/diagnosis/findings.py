@@ -56,6 +56,16 @@ class Findings(Selection):
         state, experiments = self.state, len(self.study.problem.records.first)
         return experiments * state.plain.fits[-1].mean_square, experiments * state.current.fits[-1].mean_square
 
+    @property
+    def removed(self) -> float:
+        """The share of the validation error beyond the noise that the effects remove; of that over the longest windows if those alone
+        judge, beyond what is left over the shortest."""
+        if not self.judged.by_windows_alone:
+            return min(1.0, max(0.0, 1.0 - self.judged.left(True)[0]))
+        before, after = self.sums
+        floor = len(self.study.problem.records.first) * min(f.mean_square for f in self.state.current.fits)
+        return min(1.0, max(0.0, (before - after) / max(before - floor, 1e-300)))
+
 
 def judge(selection: Selection, clock: Stopwatch) -> Findings:
     """Fit the model as it stands and the one with effects to whole records, and take back what free runs do not bear out."""

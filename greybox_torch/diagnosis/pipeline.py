@@ -235,7 +235,7 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         return (found.by_parameters,), ()
     study, state, judged = found.study, found.state, found.judged
     by_effect = sizes(study, state, found.gains)
-    told = describe(study, state, judged.augmented, found.sums, found.gains, by_effect, judged.missed)
+    told = describe(study, state, judged.augmented, found.sums, found.gains, by_effect, found.removed, judged.missed)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = refinements(study, state, found.others, found.gains, by_effect)

@@ -109,6 +109,18 @@ def test_what_nothing_explains_is_said_to_be_missing(motor_data, motor, monkeypa
     assert verdict.as_json()["mismatch"] is True
 
 
+def test_what_an_effect_explains_and_what_is_left_are_all(motor_data, motor) -> None:
+    """Seen: 100 % of the error explained, and beside it 36 % of it left: a floor in other units was taken off."""
+
+    def acting(u):
+        return dead_zone(u) + 0.05 * np.maximum(u, 0.0)  # a small effect beside it stays
+
+    found = diagnose(motor_data(acting=acting, noise=0.002), motor).verdict.as_json()
+    (effect,) = found["effects"]
+    assert 0.5 < effect["explained"] < 0.999
+    assert effect["explained"] == pytest.approx(1.0 - found["left"]["share"], abs=1e-3)
+
+
 def stopped_at(word: str, error: type[BaseException]):
     def progress(text: str) -> None:
         if text.startswith(word):

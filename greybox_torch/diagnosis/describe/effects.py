@@ -56,6 +56,7 @@ def describe(
     sums: tuple[float, ...],
     gains: Mapping[str, Gain],
     sizes: Mapping[str, float],
+    removed: float,
     missed: float = 0.0,
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
@@ -65,16 +66,15 @@ def describe(
         sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
         gains: by effect, on held-out experiments, where there are any.
         sizes: by effect, the share of the whole mismatch that it accounts for.
+        removed: the share of the validation error beyond the noise that they remove together.
         missed: mean squared error of free validation runs with them, beyond the noise and in variances of what was measured.
     """
     hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
-    floor = min(f.mean_square for f in hypothesis.fits) * max(1, len(study.problem.records.first))
-    whole = min(1.0, max(0.0, (sums[0] - sums[1]) / max(sums[0] - floor, 1e-300)))
     parts, left = _parts(state), LeftInFreeRuns(_left(sums), missed)
     return tuple(
         replace(
-            _effect(study, state, hypothesis.model, e, final, whole * part, gains.get(e.prefix), left),
+            _effect(study, state, hypothesis.model, e, final, removed * part, gains.get(e.prefix), left),
             size=sizes.get(e.prefix, float("nan")),
         )
         for e, part in zip(hypothesis.effects, parts, strict=True)

@@ -51,7 +51,7 @@ def test_a_finding_and_its_statement_are_no_surer_than_held_out_experiments_are(
     state = found(search, effect, {f"{effect.prefix}.F_c": 0.05})
     final, told = finish(state.current), []
     for gain in (Gain(0.9, 0.1), Gain(0.175, 0.138)):
-        (one,) = describe(search.study, state, final, (1.0, 0.001), {effect.prefix: gain}, {effect.prefix: 0.9})
+        (one,) = describe(search.study, state, final, (1.0, 0.001), {effect.prefix: gain}, {effect.prefix: 0.9}, 0.9)
         told.append(one)
     sure, unsure = told
     assert unsure.probability == pytest.approx(
