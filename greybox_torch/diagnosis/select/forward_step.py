@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order
 from greybox_torch.diagnosis.refit.ties import rank_by_likelihood
 from greybox_torch.diagnosis.screen.shortlist import Candidate, at_other_ports, shortlist, with_card, with_motion
 from greybox_torch.diagnosis.select.bent_model import unbent_first
@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.select.choice import as_unsure_as_a_name, chosen, l
 from greybox_torch.diagnosis.select.compare import Comparison, compare
 from greybox_torch.diagnosis.select.finer_curve import with_finer_curve, with_tied_curves_finer
 from greybox_torch.diagnosis.select.found_before import with_found_before
-from greybox_torch.diagnosis.select.its_best_values import tellable
+from greybox_torch.diagnosis.select.its_best_values import tellable, with_values_that_say_something
 from greybox_torch.diagnosis.select.offered import Screened, from_card, from_motion, screen_scores
 from greybox_torch.diagnosis.select.posterior import believed
 from greybox_torch.diagnosis.select.remaining import completes, leaves_little, left_to_complete
@@ -72,16 +72,10 @@ def forward_step(
 def take_best(
     study: Study, state: SearchState, screened: Screened, ranked: Sequence[RankedCandidate]
 ) -> Stage[SearchState]:
-    """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely.
-
-    A law that polishing has led to values which say nothing of the machine stands with those that it had before, if they do: beside what is
-    still missing, values that are nobody's may go farther. Seen: a drive's limit of 1.15 N m, beside the drag of its rotor that was missing
-    as well, led from 1.5 to the end of what it may be; the two were told as an unknown effect at the actuator (0.97).
-    """
+    """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
     compared = compare(study, state.current, screened, ranked)
-    before = {id(r.candidate): r for r in ranked if sound(study, r)}
-    kept = [r if sound(study, r) else before.get(id(r.candidate), r) for r in compared.ranked]
-    return (yield from _take(study, state, screened, replace(compared, ranked=in_order(kept, study.settings))))
+    kept = with_values_that_say_something(study, compared.ranked, ranked)
+    return (yield from _take(study, state, screened, replace(compared, ranked=kept)))
 
 
 def _in_another_valley(study: Study, state: SearchState, compared: Comparison) -> bool:

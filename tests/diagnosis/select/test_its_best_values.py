@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from greybox_torch.diagnosis.select import its_best_values as module
-from greybox_torch.diagnosis.select.its_best_values import tellable
+from greybox_torch.diagnosis.select.its_best_values import tellable, with_values_that_say_something
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS = DiagnosisSettings()
@@ -77,3 +77,15 @@ def test_where_more_than_noise_is_left_nothing_is_refuted(asked, refit) -> None:
 def test_a_free_curve_says_nothing_of_its_values_and_stands(asked, refit) -> None:
     curve = refit(0.06, True, unknown=True)
     assert asked(refit(-0.03, False), curve) == [curve]
+
+
+def test_a_law_in_the_place_of_a_curve_keeps_values_that_say_something(refit, stub, monkeypatch) -> None:
+    """Seen: a drive's limit, led to the end of what it may be beside a drag that was missing as well."""
+    monkeypatch.setattr(module, "sound", lambda study, ranked: ranked.says)
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: r.fitted.score))
+    study, limit, lag = stub(settings=SETTINGS), refit(0.4, True), refit(0.5, True)
+    led_away = stub(**{**vars(limit), "says": False, "fitted": stub(score=0.3)})
+    better = stub(**{**vars(lag), "fitted": stub(score=0.35)})
+    never = stub(**{**vars(refit(0.2, False))})
+    assert with_values_that_say_something(study, [led_away, better], [limit, lag]) == (better, limit)
+    assert with_values_that_say_something(study, [never, better], [never, lag]) == (never, better)
