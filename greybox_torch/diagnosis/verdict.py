@@ -150,8 +150,7 @@ class Verdict:
     @property
     def could_not_say(self) -> bool:
         """Whether something is missing, and the search was stopped before it could say what: no answer yet."""
-        found, no_other_reason = bool(self.effects), self.looked and not self.too_short
-        return self.mismatch and not found and not self.complete and no_other_reason
+        return self.mismatch and self.looked and not (self.effects or self.complete or self.too_short)
 
     @property
     def shown_effects(self) -> tuple[Effect, ...]:

@@ -26,6 +26,9 @@ ELSEWHERE = 1e-6
 SCATTER = 0.02
 """Share of a force's variance up to which it may differ between neighbours in the network's signals, and be a function of these."""
 
+STILL = 1e-9
+"""Part of a signal's size below which what it moves is rounding."""
+
 INDEPENDENT = 1e-6
 """Singular values below this share of the largest are taken for zero: parameters that the samples visited do not tell apart."""
 
@@ -86,12 +89,14 @@ def own_parameters(found: Trained, signals: Mapping[str, np.ndarray]) -> OwnPara
 
 def _is_function(force: np.ndarray, signals: Mapping[str, np.ndarray]) -> bool:
     """Whether a force (N,) hardly differs between samples that are neighbours in the signals (N,), beside what it differs by in all."""
-    from scipy.spatial import (
-        KDTree,
-    )  # a tenth of a second to import, which only a network that has learned something needs
+    # A tenth of a second to import, which only a network that has learned something needs.
+    from scipy.spatial import KDTree
 
-    places = np.stack([values / max(float(np.std(values)), 1e-300) for values in signals.values()], axis=1)
-    nearest = KDTree(places).query(places, k=2)[1][:, 1]
+    moving = [v / np.std(v) for v in signals.values() if np.std(v) > STILL * max(float(np.abs(v).max()), 1e-300)]
+    if not moving or len(force) < 2:
+        return bool(np.ptp(force) == 0.0)
+    places = np.stack(moving, axis=1)
+    nearest = np.asarray(KDTree(places).query(places, k=2)[1])[:, 1]
     return float(np.mean((force - force[nearest]) ** 2)) <= 2.0 * SCATTER * float(np.var(force))
 
 

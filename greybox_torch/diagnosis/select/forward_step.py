@@ -74,7 +74,7 @@ def take_best(
 ) -> Stage[SearchState]:
     """End a step: compare what was refitted, and take the best if it pays; a free curve is then drawn more finely."""
     compared = compare(study, state.current, screened, ranked)
-    kept = with_values_that_say_something(study, compared.ranked, ranked)
+    kept = with_values_that_say_something(study, compared.parent, compared.ranked, ranked)
     return (yield from _take(study, state, screened, replace(compared, ranked=kept)))
 
 

@@ -1,11 +1,12 @@
-"""A law stands with its best values, not with the best of those that say something of the machine."""
+"""Values of a law that say something of the machine: where a law stands with its best values alone, and where with the best of those."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import window_significance
-from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, sound
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
 from greybox_torch.diagnosis.select.remaining import completes
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -24,17 +25,26 @@ def tellable(study: Study, ranked: Sequence[RankedCandidate]) -> list[RankedCand
 
 
 def with_values_that_say_something(
-    study: Study, polished: Sequence[RankedCandidate], before: Sequence[RankedCandidate]
+    study: Study, parent: Hypothesis, polished: Sequence[RankedCandidate], before: Sequence[RankedCandidate]
 ) -> tuple[RankedCandidate, ...]:
     """``polished``, best first, of which a law whose values say nothing of the machine has those that it had ``before``, if they do.
 
-    For laws in the place of a free curve, which shows that more than one may be missing: beside what still is, values that are nobody's may
-    go farther. Seen: a drive's limit of 1.15 N m, beside the drag of its rotor that was missing as well, led from 1.5 to the end of what
-    it may be; the two were told as an unknown effect at the actuator (0.97).
+    For laws that were known before a step, as in the place of a free curve, which shows that more than one may be missing: beside what
+    still is, values that are nobody's may go farther. Seen: a drive's limit of 1.15 N m, beside the drag of its rotor that was missing
+    as well, led from 1.5 to the end of what it may be; the two were told as an unknown effect at the actuator (0.97).
+
+    Args:
+        parent: what all are compared with.
     """
     sounder = {id(r.candidate): r for r in before if sound(study, r)}
-    kept = [r if sound(study, r) else sounder.get(id(r.candidate), r) for r in polished]
-    return tuple(in_order(kept, study.settings)) if kept != list(polished) else tuple(polished)
+
+    def kept(r: RankedCandidate) -> RankedCandidate:
+        other = None if sound(study, r) else sounder.get(id(r.candidate))
+        return r if other is None else judged(r.candidate, parent, other.fitted, study.settings)
+
+    best = [kept(r) for r in polished]
+    changed = any(one is not other for one, other in zip(best, polished, strict=True))
+    return tuple(in_order(best, study.settings)) if changed else tuple(polished)
 
 
 def _refuted(law: RankedCandidate, other: RankedCandidate, settings: DiagnosisSettings) -> bool:

@@ -92,6 +92,7 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
         others=None,
         complete=True,
         sums=(1.0, 0.5),
+        removed=0.5,
     )
     monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
     monkeypatch.setattr(pipeline, "describe", lambda *_: ("friction", "bias"))

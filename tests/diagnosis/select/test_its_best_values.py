@@ -82,10 +82,12 @@ def test_a_free_curve_says_nothing_of_its_values_and_stands(asked, refit) -> Non
 def test_a_law_in_the_place_of_a_curve_keeps_values_that_say_something(refit, stub, monkeypatch) -> None:
     """Seen: a drive's limit, led to the end of what it may be beside a drag that was missing as well."""
     monkeypatch.setattr(module, "sound", lambda study, ranked: ranked.says)
-    monkeypatch.setattr(module, "in_order", lambda ranked, settings: sorted(ranked, key=lambda r: r.fitted.score))
+    monkeypatch.setattr(module, "in_order", lambda ranked, settings: list(ranked))
+    monkeypatch.setattr(module, "judged", lambda candidate, parent, fitted, settings: (candidate, parent, fitted.score))
     study, limit, lag = stub(settings=SETTINGS), refit(0.4, True), refit(0.5, True)
     led_away = stub(**{**vars(limit), "says": False, "fitted": stub(score=0.3)})
     better = stub(**{**vars(lag), "fitted": stub(score=0.35)})
     never = stub(**{**vars(refit(0.2, False))})
-    assert with_values_that_say_something(study, [led_away, better], [limit, lag]) == (better, limit)
-    assert with_values_that_say_something(study, [never, better], [never, lag]) == (never, better)
+    kept = with_values_that_say_something(study, "parent", [led_away, better], [limit, lag])  # pyright: ignore
+    assert kept == ((limit.candidate, "parent", 0.4), better)
+    assert with_values_that_say_something(study, "parent", [never, better], [never, lag]) == (never, better)  # pyright: ignore

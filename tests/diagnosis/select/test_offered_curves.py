@@ -91,7 +91,9 @@ def test_a_law_beside_a_curve_has_to_remove_most_of_what_that_leaves(
         forward_step, "compare", lambda study, parent, screened, ranked: Comparison(parent, tuple(ranked))
     )
     monkeypatch.setattr(forward_step, "tellable", lambda study, ranked: list(ranked))
-    monkeypatch.setattr(forward_step, "with_values_that_say_something", lambda study, polished, before: polished)
+    monkeypatch.setattr(
+        forward_step, "with_values_that_say_something", lambda study, parent, polished, before: polished
+    )
     monkeypatch.setattr(forward_step, "little_is_left", lambda study, state: False)
     assert result_of(take_best(study, state, (), [beside])).took_one is stands
 
