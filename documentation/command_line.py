@@ -33,6 +33,7 @@ def page() -> str:
                     "the input is at fault: one message names file, line or field, what was found and what is expected",
                 ),
                 ("3", "the numbers failed: what, where, and what to try"),
+                ("4", "there is nothing to do: what was asked for is decided already (`design`)"),
                 ("130", "interrupted with Ctrl-C; what is written is whole"),
             ],
         ),

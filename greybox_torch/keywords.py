@@ -24,12 +24,14 @@ _Class = TypeVar("_Class", bound=type)
 
 
 def keyword_advice(error: BaseException) -> str:
-    """What to go on with in a message about an error that code of a user raised, where it gave a public function or class such a name."""
+    """What to go on with in a message about an error that code of a user raised, where it gave a public class such a name."""
     found = _UNEXPECTED.search(str(error)) if isinstance(error, TypeError) else None
     package = import_module(__name__.partition(".")[0])  # its public names are loaded on first use
     if found is None or found[1] not in package.__all__:
         return ""
     function, name = getattr(package, found[1]), found[2]
+    if not isinstance(function, type):
+        return ""  # a function of the user's own may have the name
     return f"{_meant(name, function)}; {_taken(function)}"
 
 

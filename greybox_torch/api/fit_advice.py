@@ -6,6 +6,7 @@ import numpy as np
 
 from greybox_torch.api.scores import Scores
 from greybox_torch.data import DataSet
+from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
 from greybox_torch.estimate.problem import Problem, with_card
 from greybox_torch.name_lists import listed
@@ -78,7 +79,9 @@ def lost_in_one(scores: Scores) -> str | None:
     """
     refit, told = of_moving_outputs(scores["refit"]), []
     for score in refit:
-        others = [s for s in refit if s.output == score.output and s.experiment != score.experiment]
+        others = [
+            s for s in refit if s.output == score.output and s.experiment.removesuffix(HELD_OUT) != score.experiment
+        ]
         better = max(others, key=lambda s: s.fit, default=None)
         if (
             score.role != "estimation"

@@ -37,17 +37,17 @@ AS_GOOD = 1.2
 @dataclass(frozen=True)
 class Change:
     """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
-    where its sign is turned; ``only`` the experiment that is changed, all where it is empty.
+    where its sign is turned; ``only`` the recordings that are changed, by name, all where it is empty.
     """
 
     read: Mapping[str, str]
     question: str
     factor: float = 1.0
-    only: str = ""
+    only: tuple[str, ...] = ()
 
     def of(self, recording: Recording) -> Recording:
         """A recording with the change."""
-        if self.only not in ("", recording.name):
+        if self.only and recording.name not in self.only:
             return recording
         changed = {name: self.factor * recording.signals[other] for name, other in self.read.items()}
         between = {name: recording.between[other] for name, other in self.read.items() if other in recording.between}
@@ -85,7 +85,7 @@ def fit_after(
     runs = [change.of(recording) for recording in data.recordings]
     judged = [recording for recording in runs if recording.role == "validation"] or runs
     if change.only and not refitted:
-        judged = [recording for recording in runs if recording.name == change.only]
+        judged = [recording for recording in runs if recording.name in change.only]
     try:
         values = None
         if refitted:

@@ -87,7 +87,8 @@ def matched_beside(own: Sequence[str], adds: str) -> str:
     """What laws are matched with, where parameters of the model act where the network does."""
     one = len(own) == 1
     return (
-        f"Matched: of what another value of {listed(own)}, which act{'s' if one else ''} as a {adds} there as well, leaves of the curve. "
+        f"The match is with the part of the curve that no other value of {listed(own)} can explain: "
+        f"{'it acts' if one else 'they act'} as a {adds} there as well. "
         f"With a law in the network's place {'it is' if one else 'they are'} estimated anew."
     )
 

@@ -18,6 +18,7 @@ from greybox_torch.api.short_refits import (
     fit_after,
 )
 from greybox_torch.data import DataSet
+from greybox_torch.data.holding_out import by_experiment
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import Simulator
 
@@ -33,13 +34,13 @@ def turned_in_one(data: DataSet, model: GreyBoxModel, simulator: Simulator, achi
     Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
     """
     short = beginnings(data)
-    changes = [] if short is None or len(short.recordings) < 2 else list(_changes(short, model))
+    changes = [] if short is None else list(_changes(short, model))
     if short is None or not 0 < len(changes) <= MOST:
         return None
     lefts = {k: 100.0 - fit_after(short, model, simulator, c, refitted=False) for k, c in enumerate(changes)}
     as_begun = {
-        name: 100.0 - fit_after(short, model, simulator, Change({}, "", only=name), refitted=False)
-        for name in {change.only for change in changes}
+        names: 100.0 - fit_after(short, model, simulator, Change({}, "", only=names), refitted=False)
+        for names in {change.only for change in changes}
     }
     better = [k for k, left in lefts.items() if left < min(FAR_BETTER * as_begun[changes[k].only], 100.0 - FOLLOWS)]
     tried = [changes[k] for k in sorted(sorted(better, key=lambda k: lefts[k])[:REFITTED])]
@@ -48,7 +49,8 @@ def turned_in_one(data: DataSet, model: GreyBoxModel, simulator: Simulator, achi
 
 
 def _changes(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
-    for recording in data.recordings:
+    experiments = by_experiment(data.recordings, held_out_by_default=data.held_out_by_default)
+    for experiment, names in experiments.items() if len(experiments) > 1 else ():
         for signal in (*model.inputs, *model.outputs):
-            question = f"is the sign of {signal.name} turned in {recording.name} alone"
-            yield Change({signal.name: signal.name}, question, -1.0, recording.name)
+            question = f"is the sign of {signal.name} turned in {experiment} alone"
+            yield Change({signal.name: signal.name}, question, -1.0, names)

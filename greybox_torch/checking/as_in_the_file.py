@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
 from greybox_torch.data.error_values import without_error_values
+from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.over_files import over_files
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.source import source_of
@@ -21,6 +22,14 @@ def rows_on_the_card(data: DataSet, recording: Recording) -> tuple[int, int]:
     place = data.recordings.index(recording)
     first = place - place % 2  # two parts of every experiment, one after the other
     return data.recordings[first].rows[0], data.recordings[first + 1].rows[1]
+
+
+def rows_are_of_the_file(data: DataSet) -> bool:
+    """Whether a recording's rows are rows of its file: not where the card resamples, or leaves samples out."""
+    if data.path is None:
+        return True
+    card = read_card(data.path)
+    return not (card.decimate or card.resample)
 
 
 def as_in_the_file(
@@ -38,7 +47,7 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     if data.path is None or recording.source is None:
         return None
     card = read_card(data.path)
-    said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", " (held out)")}.get(recording.name)
+    said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", HELD_OUT)}.get(recording.name)
     if said is None or card.decimate or card.resample or card.channels[name].derivative:
         return None
     formula = card.channels[name].expression(said.columns.get(name))

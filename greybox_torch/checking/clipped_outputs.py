@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.checking.as_in_the_file import as_in_the_file
+from greybox_torch.checking.as_in_the_file import as_in_the_file, rows_are_of_the_file
 from greybox_torch.checking.error_codes import far_off
 from greybox_torch.checking.sensor_noise import LONG, Runs, noise_of
 from greybox_torch.data import DataSet, Recording
@@ -30,7 +30,8 @@ _SHOWN = 3
 @dataclass(frozen=True)
 class ClippedOutput(InASentence):
     """``count`` plateaus with ``samples`` samples of an output in an experiment, at its ``largest`` value or the smallest, which is
-    ``value``, with its unit. ``rows`` are those of the longest, [start, stop) in the file.
+    ``value``, with its unit. ``rows`` are those of the longest, [start, stop) in the file (``in_file``) or in what the card makes
+    of it.
     """
 
     experiment: str
@@ -41,6 +42,7 @@ class ClippedOutput(InASentence):
     count: int
     rows: tuple[tuple[int, int], ...]
     write: str
+    in_file: bool
 
     @property
     def found(self) -> str:
@@ -48,8 +50,9 @@ class ClippedOutput(InASentence):
         rows = ", ".join(f"[{start}, {stop}]" for start, stop in self.rows)
         end = "largest" if self.largest else "smallest"
         longest = "the longest with " if self.count > len(self.rows) else ""
-        several = f" in {self.count} stretches, {longest}rows = {rows}"
-        samples = f"for {self.samples} samples{several if self.count > 1 else f', rows = {rows}'}"
+        several = f" in {self.count} stretches" if self.count > 1 else ""
+        where = f", {longest if self.count > 1 else ''}rows = {rows}" if self.in_file else ""
+        samples = f"for {self.samples} samples{several}{where}"
         return (
             f'[[experiment]] "{self.experiment}", channel "{self.channel}": is exactly {self.value}, its {end} value, {samples}; '
             "elsewhere noise changes it with nearly every sample, as where a sensor is clipped at the end of its range, or stuck there"
@@ -118,4 +121,5 @@ def _told(
         len(plateaus),
         tuple((first + begin, first + stop) for begin, stop in longest),
         f"{marked}, which leaves them out of the comparison, unless it was measured so",
+        rows_are_of_the_file(data),
     )

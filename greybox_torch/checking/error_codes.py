@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _NINES = re.compile(r"-?9{3,9}(\.9+)?")
-_POWERS = (sign * 10.0**k for sign in (1, -1) for k in range(20, 39))
+_POWERS = tuple(float(f"{sign}1e{k}") for sign in ("", "-") for k in range(20, 39))
 _OTHERS = frozenset((-999.25, 32767.0, -32768.0, 65535.0, 2147483647.0, -2147483648.0, 4294967295.0, *_POWERS))
 """Of logs of wells, the ends of integers, and numbers that nobody measures."""
 _LEVELS = 10
@@ -19,8 +19,11 @@ _SHARE = 0.5
 
 
 def is_error_code(value: float) -> bool:
-    """Whether a number, as it stands in a file, is one of them."""
-    return value in _OTHERS or bool(_NINES.fullmatch(f"{value:.10g}"))
+    """Whether a number, as it stands in a file, is one of them, also where the file has it in single precision."""
+    with np.errstate(over="ignore"):
+        single = np.float32(value)
+    texts = [f"{value:.10g}", *([str(single).removesuffix(".0")] if float(single) == value else [])]
+    return any(float(text) in _OTHERS or _NINES.fullmatch(text) for text in texts)
 
 
 def far_off(values: NDArray[np.float64]) -> Iterator[NDArray[np.intp]]:

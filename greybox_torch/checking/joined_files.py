@@ -14,6 +14,7 @@ from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.gaps import Gap, gap_steps
+from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.source import Read, Source, source_of
@@ -81,7 +82,7 @@ def joined_files(data: DataSet) -> dict[str, JoinedFiles]:
     for entry in card.experiment:
         if entry.join == "time" and len(entry.file) > 1:
             for recording in data.recordings:
-                if recording.name in (entry.name, f"{entry.name} (held out)"):
+                if recording.name in (entry.name, f"{entry.name}{HELD_OUT}"):
                     try:
                         found[recording.name] = _read_again(data, card, entry, recording, read)
                     except (UserError, KeyError):

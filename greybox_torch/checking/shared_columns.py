@@ -20,7 +20,7 @@ class SharedColumn(InASentence):
     channels: tuple[str, str]
     column: str
     experiment: str
-    write: str = "the column of each; or scale = 1.0 in one of the two lines, if both are meant to be it"
+    write: str
 
     @property
     def found(self) -> str:
@@ -42,7 +42,9 @@ def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
                 told.add((one, other))
                 own = {one, other} & set(experiment.columns)
                 names = _named(one, card.channels[one]), _named(other, card.channels[other])
-                yield SharedColumn(names, column, experiment.name if own else "")
+                where = _where_a_scale_may_stand(card.channels[one], card.channels[other])
+                write = f"the column of each; or {where}, if both are meant to be it"
+                yield SharedColumn(names, column, experiment.name if own else "", write)
 
 
 def _shared(card: Card, experiment: ExperimentEntry, one: str, other: str) -> str:
@@ -52,6 +54,14 @@ def _shared(card: Card, experiment: ExperimentEntry, one: str, other: str) -> st
     scaled = any("scale" in entry.model_fields_set for entry in entries)
     alike = texts[0] == texts[1] and entries[0].derivative == entries[1].derivative
     return texts[0] if alike and not scaled else ""
+
+
+def _where_a_scale_may_stand(one: ChannelEntry, other: ChannelEntry) -> str:
+    """How a card says that both are meant: a line with a file_unit takes no scale."""
+    with_unit = [entry.file_unit is not None for entry in (one, other)]
+    if all(with_unit):
+        return "expr with the factor, in the place of column and file_unit, in one of the two lines"
+    return f"scale = 1.0 in {'the line that has no file_unit' if any(with_unit) else 'one of the two lines'}"
 
 
 def _named(name: str, entry: ChannelEntry) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.checking.as_in_the_file import as_in_the_file, rows_on_the_card
+from greybox_torch.checking.as_in_the_file import as_in_the_file, rows_are_of_the_file, rows_on_the_card
 from greybox_torch.checking.sensor_noise import LONG, Runs, noise_of
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
@@ -26,7 +26,8 @@ _SMALL = 0.05
 @dataclass(frozen=True)
 class StuckSensor(InASentence):
     """The longest of ``count`` such stretches of a channel in an experiment, the rows [start, stop) of the file, which last from ``begin``
-    to ``end`` (s after the start); ``value`` has its unit.
+    to ``end`` (s after the start); ``value`` has its unit. ``in_file``: whether the rows are those of its
+    file; ``or_held``: what else it may be, of a command.
     """
 
     experiment: str
@@ -37,16 +38,19 @@ class StuckSensor(InASentence):
     end: float
     count: int
     write: str
+    in_file: bool
+    or_held: str
 
     @property
     def found(self) -> str:
         """What is there, in a sentence."""
         start, stop = self.rows
+        rows = f", rows = [{start}, {stop}]" if self.in_file else ""
         others = f" (and {self.count - 1} more such stretch{'es' * (self.count > 2)})" if self.count > 1 else ""
         return (
-            f'[[experiment]] "{self.experiment}", channel "{self.channel}": {stop - start} samples are exactly {self.value}, '
-            f"rows = [{start}, {stop}], {self.begin:.6g} to {self.end:.6g} s after the start{others}; elsewhere noise changes it "
-            "with nearly every sample, as where a sensor was stuck"
+            f'[[experiment]] "{self.experiment}", channel "{self.channel}": {stop - start} samples are exactly {self.value}{rows}, '
+            f"{self.begin:.6g} to {self.end:.6g} s after the start{others}; elsewhere noise changes it "
+            f"with nearly every sample, as where a sensor was stuck{self.or_held}"
         )
 
 
@@ -105,8 +109,15 @@ def _told(
     rows = first + start, first + stop
     value = in_unit(f"{recording.signals[name][start]:.6g}", data.channels[name].unit or "")
     begin, end = (float(recording.time[k] - recording.time[0]) for k in (start, stop - 1))
-    pieces = pieces_around(rows, rows_on_the_card(data, recording))
+    in_file = rows_are_of_the_file(data)
+    pieces = pieces_around(rows, rows_on_the_card(data, recording)) if in_file else _around(begin, end)
     _, column = as_in_the_file(data, recording, name, start)
     marked = f", or missing = {column[start]:.12g} in the channel's line on the card" if column is not None else ""
     write = f"empty cells or NaN there, which are missing samples{marked}; or {pieces}" if is_output else pieces
-    return StuckSensor(recording.name, name, value, rows, begin, end, count, f"{write}; nothing, if it was measured so")
+    held = "" if is_output else ", or a command was held"
+    nothing = f"{write}; nothing, if it was measured so"
+    return StuckSensor(recording.name, name, value, rows, begin, end, count, nothing, in_file, held)
+
+
+def _around(begin: float, end: float) -> str:
+    return f"two experiments of the same file, one before {begin:.6g} s after the start and one after {end:.6g} s"

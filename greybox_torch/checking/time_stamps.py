@@ -12,6 +12,7 @@ from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces_around
+from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.steps import even_step
 from greybox_torch.name_lists import listed
@@ -42,7 +43,7 @@ def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterato
             of_step.setdefault(even_step(recording.time), []).append((recording, lost))
     yield from (_lost(step, losing) for step, losing in of_step.items())
     for name, files in joined.items():
-        held_out = joined.get(f"{name} (held out)") if data.held_out_by_default else None
+        held_out = joined.get(f"{name}{HELD_OUT}") if data.held_out_by_default else None
         for table in files.source.joined:
             gap = files.longest_gap(table, np.inf if held_out is None else held_out.recording.time[0])
             if gap is not None:

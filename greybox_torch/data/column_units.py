@@ -25,8 +25,8 @@ _AS_WRITTEN = ("mN", "MN", "mW", "MW", "mJ", "MJ", "Pa")
 
 _OVER_ONE = {
     *_AS_WRITTEN,
-    *_ENDINGS.values(),
-    *(unit for unit in USUAL if len(unit) > 1),
+    *(unit for unit in _ENDINGS.values() if unit not in ("ms", "us")),
+    *(unit for unit in USUAL if len(unit) > 1 and unit not in ("min", "ms")),
     "°C",
     "°F",
     "m/s²",
@@ -34,7 +34,13 @@ _OVER_ONE = {
     "Nm",
     "kNm",
 }
-"""Units that a quantity stands over; letters alone are the names of signals in paths as well ("motor/A")."""
+"""Units that a quantity stands over; letters alone are the names of signals in paths as well ("motor/A"), and per minute is a rate
+("strokes/min")."""
+OF_QUANTITY = {
+    "A": re.compile(r"(i|i[dq]|curr?|currents?|amps?|strom)([\W_\d]|$)", re.IGNORECASE),
+    "V": re.compile(r"(u|v|u[dq]|volts?|voltages?|spannung)([\W_\d]|$)", re.IGNORECASE),
+}
+"""What a name begins with where a letter at its end is a unit, and no phase."""
 _PARTS = re.compile(r"(.+)([_/]|(?<=\S) )([^_/ ]+)")
 """A name, what stands before its last word, and that word, which may be a unit."""
 
@@ -61,12 +67,19 @@ def parts_of(column: str) -> tuple[str, str, str]:
 
 
 def _set_apart(column: str) -> re.Match[str] | None:
-    bracketed = _BRACKETS.search(column) or _IN.search(column)
+    behind_in = _IN.search(column)
+    if behind_in and len(behind_in[1]) == 1 and not _names_its_quantity(column, behind_in[1]):
+        return None  # the pressure in chamber A
+    bracketed = _BRACKETS.search(column) or behind_in
     if bracketed:
         return bracketed if not bracketed[1].isdigit() and is_unit(bracketed[1]) else None
     over = None if "/" not in column or column.startswith("/") else _OVER.search(column, column.index("/") - 1)
     usual = over is not None and (over[1] in _OVER_ONE or turns_per_time(over[1]))
     return over if usual and not (turns_per_time(column) or is_unit(column)) else None
+
+
+def _names_its_quantity(column: str, unit: str) -> bool:
+    return unit in OF_QUANTITY and bool(OF_QUANTITY[unit].match(column))
 
 
 def without_unit(column: str) -> str:

@@ -12,6 +12,18 @@ from greybox_torch.data.asked_for import left_out
 from greybox_torch.data.recording import Recording
 from greybox_torch.errors import UserError
 
+HELD_OUT = " (held out)"
+"""What the name of an experiment's last quarter ends in."""
+
+
+def by_experiment(recordings: Sequence[Recording], *, held_out_by_default: bool) -> dict[str, tuple[str, ...]]:
+    """The names of the recordings of each experiment of a card: of two, where its last quarter is held out by default."""
+    names: dict[str, tuple[str, ...]] = {}
+    for recording in recordings:
+        experiment = recording.name.removesuffix(HELD_OUT) if held_out_by_default else recording.name
+        names[experiment] = (*names.get(experiment, ()), recording.name)
+    return names
+
 
 def hold_out_last_quarters(recordings: Sequence[Recording], path: Path | None) -> tuple[Recording, ...]:
     """Every recording as two: its first three quarters, and the last as "<name> (held out)" with the role "validation".
@@ -27,7 +39,7 @@ def hold_out_last_quarters(recordings: Sequence[Recording], path: Path | None) -
             )
         parts += [
             recording.part(0, split),
-            recording.part(split, len(recording), name=f"{recording.name} (held out)", role="validation"),
+            recording.part(split, len(recording), name=f"{recording.name}{HELD_OUT}", role="validation"),
         ]
     where = "DataSet, recordings" if path is None else f"{path}, [[experiment]] name"
     check_same_names([part.name for part in parts], f"{where}, with the last quarter of each held out")

@@ -19,7 +19,7 @@ MORE_IS_LEFT = 0.1
 
 
 def about_sizes(effects: Sequence[Effect], refinements: Sequence[Effect], left: float | None) -> tuple[str, ...]:
-    """Sentences where the sizes are much less than what the effects account for together, or more than what remains leaves room for.
+    """Sentences where the sizes are much less than what the effects account for together, or one is more than what remains leaves room for.
 
     Args:
         left: share of the mismatch that all of them leave, None where that is not known.
@@ -31,14 +31,15 @@ def about_sizes(effects: Sequence[Effect], refinements: Sequence[Effect], left: 
 
 
 def of_other_errors(sizes: Sequence[float], left: float | None) -> tuple[str, ...]:
-    """A sentence where the sizes of effects say that more has gone than what remains leaves room for; none elsewhere.
+    """A sentence where the size of one effect says that more has gone than what remains leaves room for; none elsewhere. Sizes of several
+    need not add up.
 
     Seen: "size 100 %", and three lines below "36 % of the mismatch remains".
     """
-    if left is None or not np.isfinite([*sizes, left]).all() or sum(sizes) + left <= 1.0 + MORE_IS_LEFT:
+    if left is None or not np.isfinite([*sizes, left]).all() or max(sizes, default=0.0) + left <= 1.0 + MORE_IS_LEFT:
         return ()
     return (
-        "Sizes and what remains come to more than 100 %, as they are of different errors: sizes of those over windows, whose start states "
+        "A size and what remains come to more than 100 %, as they are of different errors: sizes of those over windows, whose start states "
         "are estimated, and what remains of those of free runs, where errors last and add up.",
     )
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry
-from greybox_torch.data.column_units import is_set_apart, parts_of, unit_in
+from greybox_torch.data.column_units import OF_QUANTITY, is_set_apart, parts_of, unit_in
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.time_units import SPELLINGS
@@ -29,11 +29,6 @@ _SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC", "degF"))
 """Endings that are units whatever the card says. Of others, such as x_bar and heat_rad, only another scale is told."""
 _AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
 """Sure only if written so: speed_ma is a moving average, u_mv a manipulated variable."""
-_OF_QUANTITY = {
-    "A": re.compile(r"(i|i[dq]|curr?|currents?|amps?|strom)([\W_\d]|$)", re.IGNORECASE),
-    "V": re.compile(r"(u|v|u[dq]|volts?|voltages?|spannung)([\W_\d]|$)", re.IGNORECASE),
-}
-"""What a name begins with where a letter at its end is a unit, and no phase."""
 _TEMPERATURE = {"[temperature]": 1.0}
 
 
@@ -112,7 +107,7 @@ def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
         alone = told in ("deg", "°", "min", "degrees", "K")  # of a temperature, or the least, or a gain
         return (told, not alone) if known else ("", False)
     stem, separator, last = parts_of(column)
-    if last in _OF_QUANTITY and _OF_QUANTITY[last].match(stem):
+    if last in OF_QUANTITY and OF_QUANTITY[last].match(stem):
         phases = {other for other in columns if re.fullmatch(re.escape(stem + separator) + "[A-Za-z]", other)}
         return (last, True) if len(phases) == 1 else ("", False)
     return told, told in _SURE or last in _AS_WRITTEN

@@ -9,6 +9,9 @@ import numpy as np
 INDEPENDENT = 1e-6
 """Singular values below this share of the largest are taken for zero."""
 
+ROUNDING = 1e-12
+"""Share of a force's square below which what is left of it is rounding."""
+
 
 @dataclass(frozen=True)
 class LeftBeside:
@@ -31,6 +34,12 @@ class LeftBeside:
         vectors, sizes, _ = np.linalg.svd(columns, full_matrices=False)
         whole = LeftBeside(root, vectors[:, sizes > INDEPENDENT * sizes[0]], force)
         return LeftBeside(root, whole.basis, np.where(root > 0, whole.by(force) / np.where(root > 0, root, 1.0), 0.0))
+
+    def share_of(self, force: np.ndarray, lacking: np.ndarray) -> float:
+        """Which share of what the forces beside leave of a ``force`` (N,) a law draws that lacks ``lacking`` (N,), weighted; none of what
+        is left of it by rounding."""
+        left, whole = (float((part**2).sum()) for part in (self.by(force), self.root * force))
+        return 1.0 - float((lacking**2).sum()) / left if left > ROUNDING * whole else 0.0
 
     def by(self, forces: np.ndarray) -> np.ndarray:
         """What they leave of forces (N,) or (N, m), weighted."""

@@ -96,12 +96,11 @@ def _trials(
         return _shape_trials(law, around, signals, force, left)
     results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
     target = left.by(force)
-    total = max(float((target**2).sum()), 1e-300)
     for probe in law.probes(around):
         columns = left.by(force_columns(law, around, signals, probe))
         size = linear_least_squares(columns, target, rcond=1e-10)
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
-        share = 1.0 - float(((target - columns @ size) ** 2).sum()) / total
+        share = left.share_of(force, target - columns @ size)
         results.append(
             Match(law, share, {**probe.values, **dict(zip(probe.directions, map(float, size), strict=True))})
         )
@@ -126,7 +125,7 @@ def _placed(
     start = np.array([match.values.get(p.name, p.value) for p in free])
     scale = np.maximum(np.abs(start), 1e-12)
     found = least_squares(lacking, np.clip(start, low, high), bounds=(low, high), x_scale=scale, max_nfev=40)
-    share = 1.0 - float(np.sum(found.fun**2)) / max(float(np.sum(left.by(force) ** 2)), 1e-300)
+    share = left.share_of(force, found.fun)
     return Match(match.law, share, {**match.values, **dict(zip(names, map(float, found.x), strict=True))})
 
 

@@ -82,7 +82,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
 def _plot_signals(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> None:
     axes.plot(*broken_at_gaps(time, measured), color="0.75", linewidth=3.0, label="measured")
     for label, values in runs.items():
-        axes.plot(time, values, linewidth=0.9, label=label)
+        axes.plot(*broken_at_gaps(time, values), linewidth=0.9, label=label)
     axes.margins(x=0)
     axes.tick_params(labelbottom=False)
 

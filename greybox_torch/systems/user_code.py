@@ -43,8 +43,11 @@ def users_code(file: Path, place: str, doing: str) -> Iterator[None]:
             f"{place}{line_in(file, error)}: {doing} called sys.exit({_said(error)}); expected a class, and nothing that ends the program"
         ) from None
     except BaseException as error:
+        said, advice = _said(error), keyword_advice(error)
+        if advice:
+            said = said.partition(". Did you mean")[0]  # as newer versions of Python go on
         raise UserError(
-            f"{place}{line_in(file, error)}: {doing} raised {type(error).__name__}: {_said(error)}{keyword_advice(error)}"
+            f"{place}{line_in(file, error)}: {doing} raised {type(error).__name__}: {said}{advice}"
         ) from None
 
 

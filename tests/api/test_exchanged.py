@@ -91,6 +91,13 @@ def test_a_sign_that_is_turned_in_one_experiment_is_asked_for(channel: str, wher
     assert question is not None and f"the sign of {channel} turned in {where} alone" in question
 
 
+def test_a_sign_that_is_turned_in_one_file_is_asked_for_where_last_quarters_are_held_out() -> None:
+    """Both parts of the file are turned; one of them judges."""
+    runs = [replace(recorded("estimation", k, {}, {"T2": -1.0} if k == 1 else {}), name=f"run {k}") for k in range(3)]
+    question = gt.fit(Plate(), gt.DataSet(runs)).question
+    assert question is not None and "the sign of T2 turned in run 1 alone" in question
+
+
 def test_nothing_is_asked_where_the_fit_is_good() -> None:
     assert fitted().question is None and MOST_SAMPLES >= COUNT
 

@@ -90,6 +90,7 @@ def test_an_output_that_is_lost_in_one_experiment_is_told() -> None:
     others = (("lauf2", 30.8, 4.5), ("lauf3", 34.0, 3.86))
     told = of(("lauf1", -119.7, 12.4), *others)
     assert told is not None and "current in lauf1 (-120 %, in lauf3 34 %)" in told and "another sign, unit" in told
+    assert of(("lauf1", -119.7, 12.4), ("lauf1 (held out)", 34.0, 3.9)) is None, "the rest of the same file"
     assert of(("lauf1", -10.0, 4.6), *others) is None, "as large an error as elsewhere: little moved there"
     assert of(("lauf1", -119.7, 12.4), ("lauf3", -50.0, 3.9)) is None, "lost everywhere"
     assert of(("lauf1", -119.7, 12.4), *others, role="validation") is None, "what is lost in validation is judged there"

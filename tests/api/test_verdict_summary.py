@@ -129,6 +129,8 @@ def test_a_size_beside_more_that_remains_is_explained() -> None:
     shown = Effects.of(whole)
     assert shown is not None and (shown.cards[0].size, shown.cards[0].explained) == ("100 %", "64 %")
     assert not replace(whole, left=Left(0.05, 1.3, "5 % remains.")).about_sizes
+    several = replace(verdict(replace(BACKLASH, size=0.8), replace(BACKLASH, size=0.7)), left=Left(0.02, 1.3, "2 %."))
+    assert not several.about_sizes, "sizes of several need not add up"
     for left in (None, Left(1.2, 5.4, "As much remains.")):
         assert Effects.of(replace(whole, left=left)).cards[0].explained == ""  # type: ignore[union-attr]
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from greybox_torch.api.data_warnings import data_warnings
+from greybox_torch.checking.error_codes import is_error_code
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.data import DataSet, Recording, load_dataset
 
@@ -32,6 +33,21 @@ def changed(values: np.ndarray, at: list[int], value: float) -> np.ndarray:
     values = values.copy()
     values[at] = value
     return values
+
+
+@pytest.mark.parametrize(
+    "code", [-9999.0, 999.9, -999.25, 32767.0, 1e20, -1e23, 1e30, float(np.float32(1e30)), float(np.float32(9999.9))]
+)
+def test_numbers_that_are_error_codes(code: float) -> None:
+    """Also in files of single precision."""
+    assert is_error_code(code)
+
+
+@pytest.mark.parametrize(
+    "number", [0.0, 99.0, 9998.0, 1234.5, 1e19, 3e20, float(np.float32(9998.9)), float("inf"), 1e200]
+)
+def test_numbers_that_are_none(number: float) -> None:
+    assert not is_error_code(number)
 
 
 @pytest.mark.parametrize("values", [np.sin(TIME) + NOISE, STEPS, 20.0 + 60.0 * TIME])

@@ -30,6 +30,15 @@ def test_one_column_for_two_channels(tmp_path: Path) -> None:
     assert '"u" and "v" are both read from "a + b"' in one
 
 
+def test_what_to_write_is_what_a_card_takes(tmp_path: Path) -> None:
+    """A line with a file_unit takes no scale."""
+    both, of_u = '{{ column = "a", unit = "V"{} }}', ', file_unit = "mV"'
+    (one,) = told(tmp_path, f"u = {both.format(of_u)}\nv = {both.format('')}")
+    assert "or scale = 1.0 in the line that has no file_unit, if both are meant" in one
+    (one,) = told(tmp_path, f"u = {both.format(of_u)}\nv = {both.format(of_u)}")
+    assert "or expr with the factor, in the place of column and file_unit, in one of the two lines" in one
+
+
 def test_in_one_experiment_alone(tmp_path: Path) -> None:
     (one,) = told(tmp_path, 'u = { column = "a" }\ny = { column = "b" }', of_judged='columns = { y = "a" }')
     assert one.startswith('[[experiment]] "judged", columns: "u" and "y" are both read from "a"')

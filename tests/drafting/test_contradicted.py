@@ -63,6 +63,9 @@ TOLD = {
     'a = { column = "LI101 mm", unit = "m" }': ("mm", "m"),
 }
 SILENT = [
+    'a = { column = "pressure in A", unit = "bar" }',  # the chamber
+    'a = { column = "strokes/min", unit = "1/s" }',
+    'a = { column = "pulses/ms", unit = "1/s" }',
     'a = { column = "T [°C]", unit = "degC" }',
     'a = { column = "T (C)", unit = "°C" }',
     'a = { column = "T_K", unit = "degC" }',  # a letter alone

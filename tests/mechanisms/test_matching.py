@@ -98,6 +98,13 @@ def test_a_force_beside_is_left_out_of_the_comparison() -> None:
     assert beside.values["c"] == pytest.approx(0.3)
 
 
+def test_of_rounding_no_law_matches_a_share() -> None:
+    """Where what acts beside can be all of the force, nothing is left for a law."""
+    force = np.exp(SPEED.numpy() / 3.0)
+    found = matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY, beside=force[:, None])
+    assert found and all(match.share == 0.0 for match in found)
+
+
 def test_kinematic_laws() -> None:
     found = {law.name: sizes for law, sizes in kinematic_laws(AROUND, {"deflection", "rate"})}
     assert list(found) == ["backlash"]
