@@ -102,6 +102,7 @@ struct Job {
   long every, restarts;    // samples between restarts, and how many there are, the start included; none where null
   const real *u;           // [NU][samples]   recorded inputs, all experiments one after another
   const real *dt;          // [samples]       time to the next sample
+  const long *parts;       // [samples] or null: by how many more sub-steps that time is gone through, in gaps
   const long *start;       // [groups][LANES] first sample of each window
   const long *last;        // [groups][LANES] last sample that the window may read
   const long *column;      // [directions]    parameter column, or NS for a start-state direction
@@ -202,10 +203,16 @@ template <bool TANGENTS> static void run_group(const Job &job, long g) {
       accumulate(rows, filled, width, gnormal, job);
       filled = 0;
     }
-    const vec H = gather(job.dt, now) / (real)job.substeps;
-    for (long m = 0; m < job.substeps; m++) {
+    long substeps = job.substeps;
+    if (job.parts) {
+      long most = 1;
+      for (int l = 0; l < LANES; l++) most = job.parts[now[l]] > most ? job.parts[now[l]] : most;
+      substeps *= most;
+    }
+    const vec H = gather(job.dt, now) / (real)substeps;
+    for (long m = 0; m < substeps; m++) {
       vec a[NU], b[NU], k1[NX], k2[NX], k3[NX], k4[NX], z[NX];
-      const real from = (real)m / job.substeps, middle = ((real)m + (real)0.5) / job.substeps, to = (real)(m + 1) / job.substeps;
+      const real from = (real)m / substeps, middle = ((real)m + (real)0.5) / substeps, to = (real)(m + 1) / substeps;
       UNROLL for (int i = 0; i < NU; i++) {
         a[i] = u0[i] + from * (u1[i] - u0[i]);
         uh[i] = u0[i] + middle * (u1[i] - u0[i]);

@@ -13,6 +13,7 @@ from torch.func import jvp, vmap
 from greybox_torch.deadline import check_time
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.simulation.packed_normals import PackedNormals
+from greybox_torch.simulation.parts_of_gaps import parts_of_gaps
 from greybox_torch.simulation.passes import Pass, Restarts, Run
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.windows import Windows
@@ -64,7 +65,7 @@ class EagerStepper:
         ys, dys, xs = [], [], []
         begun = [x]
         with torch.no_grad():
-            for n, (u0, u1, dt) in enumerate(self._inputs(records, windows)):
+            for n, (u0, u1, dt, parts) in enumerate(self._inputs(records, windows)):
                 check_time()  # a pass takes seconds here
                 if asked.restarts is not None and n and n % asked.restarts.every == 0:
                     x = self._restarted(x, asked.restarts, n // asked.restarts.every)
@@ -74,8 +75,9 @@ class EagerStepper:
                 dys.append(dy)
                 if asked.keep_states:
                     xs.append(x)
-                for m in range(substeps):
-                    step = runge_kutta_step(self._rates, u0, u1, dt / substeps, m / substeps, (m + 1) / substeps)
+                steps = substeps * parts
+                for m in range(steps):
+                    step = runge_kutta_step(self._rates, u0, u1, dt / steps, m / steps, (m + 1) / steps)
                     x, dx = self._pushed(step, x, u0, values, dx, dp)
         directed = n_p + n_s > 0
         y = _array(torch.stack(ys), (2, 0, 1))
@@ -127,12 +129,13 @@ class EagerStepper:
         return dp
 
     def _inputs(self, records: Records, windows: Windows):
-        u, dt = self._tensor(records.u), self._tensor(records.dt)
+        u, dt, parts = self._tensor(records.u), self._tensor(records.dt), parts_of_gaps(records)
         start, last = (torch.as_tensor(a, device=self.device) for a in (windows.start, windows.last))
         for n in range(windows.steps):
             now, following = torch.minimum(start + n, last), torch.minimum(start + n + 1, last)
             u0 = u[:, now]
-            yield u0, (u[:, following] if records.hold == "foh" else u0), dt[now]
+            most = 1 if parts is None else int(parts[np.minimum(windows.start + n, windows.last)].max())
+            yield u0, (u[:, following] if records.hold == "foh" else u0), dt[now], most
 
     def _tensor(self, values: np.ndarray) -> Vector:
         return torch.as_tensor(np.array(values), dtype=self.dtype, device=self.device)

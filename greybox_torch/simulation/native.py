@@ -13,6 +13,7 @@ from greybox_torch.codegen.build import library
 from greybox_torch.codegen.emit import emit
 from greybox_torch.codegen.lower import Equations
 from greybox_torch.simulation.packed_normals import Layout, PackedNormals
+from greybox_torch.simulation.parts_of_gaps import parts_of_gaps
 from greybox_torch.simulation.passes import Pass, Probes, Run
 from greybox_torch.simulation.records import Records, once
 from greybox_torch.simulation.side_by_side import threads
@@ -38,6 +39,7 @@ class _Job(ctypes.Structure):
             for n in (
                 "u",
                 "dt",
+                "parts",
                 "start",
                 "last",
                 "column",
@@ -103,6 +105,7 @@ class NativeStepper:
         packed = {
             "u": signals["u"],
             "dt": signals["dt"],
+            "parts": parts_of_gaps(records),
             "start": _lanes(windows.start, lanes, np.int64),
             "last": _lanes(windows.last, lanes, np.int64),
             "column": np.array([*range(n_p), *([len(self.sensitive)] * n_s)], dtype=np.int64),
