@@ -78,8 +78,7 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     assert f"{found.question}." in found._advice
 
 
-@pytest.mark.parametrize("channel", ["P1", "T2"])
-@pytest.mark.parametrize("where", ["first", "second", "held out"])
+@pytest.mark.parametrize(("channel", "where"), [("P1", "first"), ("T2", "second"), ("T2", "held out")])
 def test_a_sign_that_is_turned_in_one_experiment_is_asked_for(channel: str, where: str) -> None:
     """Seen: a current sensor mounted the other way round in one of three recordings, and not a word."""
     roles = {"first": "estimation", "second": "estimation", "held out": "validation"}

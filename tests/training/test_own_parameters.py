@@ -85,8 +85,11 @@ def test_an_overflow_that_the_network_trades_against_the_outlet_is_named(explain
 
 
 def test_what_laws_are_matched_with_is_told() -> None:
-    assert matched_beside(["a"], "flow").startswith("Matched: of what another value of a, which acts as a flow there")
-    assert "a and b, which act as" in matched_beside(["a", "b"], "force")
+    one, two = matched_beside(["a"], "flow"), matched_beside(["a", "b"], "force")
+    assert one.startswith(
+        "The match is with the part of the curve that no other value of a can explain: it acts as a flow there"
+    )
+    assert "no other value of a and b can explain: they act as a force" in two
 
 
 def test_of_laws_that_were_not_refitted_nothing_is_said_but_their_match(trained: Trained) -> None:
