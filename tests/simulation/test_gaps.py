@@ -37,10 +37,9 @@ def test_against_scipy(hold: str) -> None:
     assert (np.abs(found[0] - expected) < 1e-3 * size).all()
 
 
-@pytest.mark.parametrize("hold", ["zoh", "foh"])
-def test_compiled_and_eager_agree(hold: str) -> None:
-    records = with_gap(hold)
-    asked = Pass(Windows(np.array([0, 120, 200]), np.array([99, 199, 259]), 80), P, np.tile(X0, (3, 1)), tangents=True)
+def test_compiled_and_eager_agree() -> None:
+    records = with_gap("foh", 12.0)
+    asked = Pass(Windows(np.array([0, 120, 200]), np.array([99, 199, 259]), 30), P, np.tile(X0, (3, 1)), tangents=True)
     one = native().run(records, asked, substeps=2)
     other = EagerStepper.of(ARM, PARAMETERS, "cpu", "double").run(records, asked, substeps=2)
     assert one.dy is not None and other.dy is not None

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from experiments.speed import rows
+from experiments.speed import rows, timing
 from experiments.speed.adam import descend, our_gradient
 from experiments.speed.plot import draw_growth
 from experiments.speed.records import NAMES, arm_values, published, simulated_problem
@@ -31,7 +31,13 @@ ROW = Row(
 )
 
 
-def test_timing_takes_turns_and_the_median() -> None:
+@pytest.fixture
+def uncollected(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Garbage of thousands of tests takes a second to collect, each time."""
+    monkeypatch.setattr(timing.gc, "collect", lambda: 0)
+
+
+def test_timing_takes_turns_and_the_median(uncollected: None) -> None:
     calls: list[str] = []
     times = interleaved({"a": lambda: calls.append("a"), "b": lambda: calls.append("b")}, repeats=1)
     assert calls == ["a", "b"] * 6, "one call each that is not timed, then at least five in turn"
@@ -39,7 +45,7 @@ def test_timing_takes_turns_and_the_median() -> None:
     assert Timing((3.0, 1.0, 2.0, 9.0, 8.0)).median == 3.0
 
 
-def test_timing_measures_the_call() -> None:
+def test_timing_measures_the_call(uncollected: None) -> None:
     assert interleaved({"sleep": lambda: time.sleep(0.01)})["sleep"].median >= 0.01
 
 
