@@ -36,10 +36,11 @@ def with_values_that_say_something(
     Args:
         parent: what all are compared with.
     """
-    sounder = {id(r.candidate): r for r in before if sound(study, r)}
 
     def kept(r: RankedCandidate) -> RankedCandidate:
-        other = None if sound(study, r) else sounder.get(id(r.candidate))
+        if sound(study, r):
+            return r
+        other = next((one for one in before if one.candidate is r.candidate and sound(study, one)), None)
         return r if other is None else judged(r.candidate, parent, other.fitted, study.settings)
 
     best = [kept(r) for r in polished]
