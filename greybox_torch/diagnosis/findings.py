@@ -7,9 +7,12 @@ Ctrl-C there ends the diagnosis.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
+
+import numpy as np
 
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.confirm.curve_beside_laws import sized_by_free_runs
@@ -18,14 +21,16 @@ from greybox_torch.diagnosis.confirm.far_better import Standing
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.holding import Judged, holding, passed_over
 from greybox_torch.diagnosis.confirm.judgement import Judgement
+from greybox_torch.diagnosis.confirm.less_than_is_left import less_than_is_left
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
-from greybox_torch.diagnosis.confirm.standing import findings
+from greybox_torch.diagnosis.confirm.standing import refinements, sizes
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
 from greybox_torch.diagnosis.confirm.when_stopped import found_first
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.final import Final, finish, from_longest_windows
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.selection import Selection
 from greybox_torch.diagnosis.stopping import or_else
@@ -55,6 +60,14 @@ class Findings(Selection):
             return self.judged.sums
         state, experiments = self.state, len(self.study.problem.records.first)
         return experiments * state.plain.fits[-1].mean_square, experiments * state.current.fits[-1].mean_square
+
+    @property
+    def left(self) -> LeftInFreeRuns:
+        """What the effects leave in free runs of the validation experiments; over the longest windows if those alone judge."""
+        before, after = self.sums
+        share = after / before if np.isfinite(before) and before > 0 else 0.0
+        times = 0.0 if self.judged.by_windows_alone else self.judged.left(True)[1]
+        return LeftInFreeRuns(share, self.judged.missed, times)
 
     @property
     def removed(self) -> float:
@@ -158,6 +171,17 @@ def _curve_is_asked(searched: SearchState, found: Judged) -> bool:
     return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_ask_for_a_curve
 
 
+def small_ones(found: Findings, by_effect: Mapping[str, float]) -> set[str]:
+    """The effects that are refinements: those that windows say are too small, and those that are less than what free runs leave.
+
+    Args:
+        by_effect: the size of every effect.
+    """
+    study, state = found.study, found.state
+    small = refinements(study, state, found.others, found.gains, by_effect)
+    return small | less_than_is_left(state, by_effect, found.judged, study.settings)
+
+
 def without_refinements_alone(found: Findings) -> Findings:
     """``found``, without effects where all of them are refinements that free runs do not need: such alone are none of the machine's.
 
@@ -165,7 +189,8 @@ def without_refinements_alone(found: Findings) -> Findings:
     that was 39 % of the held-out error over windows of an eighth of the record, within chance, and 83 % over those of a quarter.
     """
     study, state = found.study, found.state
-    if not state.effects or findings(study, state, found.others, found.gains):
+    small = small_ones(found, sizes(study, state, found.gains))
+    if small != state.prefixes or not state.effects:
         return found
     if shown_by_free_runs(study, state, found.gains, found.judged):
         return found

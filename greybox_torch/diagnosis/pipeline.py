@@ -12,7 +12,7 @@ from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.common_gain import with_common_gain
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
-from greybox_torch.diagnosis.confirm.standing import refinements, sizes
+from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe import report_data
@@ -25,7 +25,7 @@ from greybox_torch.diagnosis.describe.rivals import Rival, rivals
 from greybox_torch.diagnosis.describe.unsure import unsure_candidate
 from greybox_torch.diagnosis.describe.without_a_name import A_DISTURBANCE, error_without_a_name, is_missing
 from greybox_torch.diagnosis.effect import Effect
-from greybox_torch.diagnosis.findings import Findings
+from greybox_torch.diagnosis.findings import Findings, small_ones
 from greybox_torch.diagnosis.further_searches import find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.progress import Journal, Progress
@@ -235,10 +235,10 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
         return (found.by_parameters,), ()
     study, state, judged = found.study, found.state, found.judged
     by_effect = sizes(study, state, found.gains)
-    told = describe(study, state, judged.augmented, found.sums, found.gains, by_effect, found.removed, judged.missed)
+    told = describe(study, state, judged.augmented, found.left, found.gains, by_effect, found.removed)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
-    small = refinements(study, state, found.others, found.gains, by_effect)
+    small = small_ones(found, by_effect)
     if small == state.prefixes:
         small -= shown_by_free_runs(study, state, found.gains, judged)
     both = list(zip(state.effects, told, strict=True))

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import torch
 
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms import shift
 from greybox_torch.model import Coupling, GreyBoxModel, Signals
+from greybox_torch.model.ports import Signal
 
 OTHER = 1.3
 """Times the values of the free parameters, at which a slope has to be the same: a gear ratio that is estimated is another one tomorrow."""
@@ -19,12 +22,23 @@ def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
 
 
 def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, points: int = 24) -> str:
-    """The state through which a change of a coupling's deflection reaches nothing but its spring, as :func:`shift.written` has it.
+    """The states through which a change of a coupling's deflection reaches nothing but its spring, as :func:`shift.written` has them.
 
     A kinematic mechanism (play, transmission error) changes the deflection that the spring sees. That is the same as moving one state
     that the deflection depends on with the same slope everywhere, provided the rates depend on that state only by way of this coupling:
-    then they change in the direction in which the port's force acts. One with slope ±1 is preferred to one behind a gear. Empty where
-    there is no such state.
+    then they change in the direction in which the port's force acts. One with slope ±1 is preferred to one behind a gear. Where no state
+    does it, two that move together may: of a motor's angle and a twist, from which a link's angle follows that its weight depends on,
+    both move, and the link's angle does not. Empty where nothing does.
+    """
+    found = _one(*_seen(model, problem, port, points), [s.name for s in model.states], port.deflection)
+    return shift.written(found)
+
+
+def _seen(
+    model: GreyBoxModel, problem: Problem, port: Coupling, points: int
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
+    """At random points, with the parameters as they are and with the free ones changed: slopes of the deflection (points, n_x), and what a
+    state changes of the rates (points, n_x, n_x), the rate first: all of it, and what is not along the direction of the port's force.
     """
     generator = torch.Generator().manual_seed(0)
     n_x, n_u = len(model.states), len(model.inputs)
@@ -33,26 +47,47 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
         if n_u
         else torch.ones(0, dtype=torch.float64)
     )
-    names = [s.name for s in model.states]
-    index = port.deflection if isinstance(port.deflection, str) else None
-    works = {i: True for i in range(n_x) if index is None or names[i] == index}
-    slopes_seen: dict[int, float] = {}
     draws = torch.randn(points, n_x + n_u, dtype=torch.float64, generator=generator).T
     p = problem.parameter_tensors
     elsewhere = p.replaced(**{n: OTHER * p[n] for n, free in zip(problem.names, problem.free, strict=True) if free})
     drawn = (_slopes(model, port, draws[:n_x], scale_u[:, None] * draws[n_x:], one) for one in (p, elsewhere))
-    slopes = (torch.cat(parts, dim=-1) for parts in zip(*drawn, strict=True))
-    for slope, by_state, by_force in zip(*(s.unbind(-1) for s in slopes), strict=True):
-        for i in works:
-            change = by_state[:, i]
-            along = by_force * (change @ by_force) / (by_force @ by_force)
-            parallel = torch.linalg.vector_norm(change - along) <= 1e-8 * torch.linalg.vector_norm(change)
-            seen = slopes_seen.setdefault(i, float(slope[i]))
-            same = seen != 0.0 and abs(float(slope[i]) - seen) < 1e-9 * abs(seen)
-            works[i] = works[i] and bool(parallel) and same
-    found = [i for i, ok in works.items() if ok]
-    chosen = next((i for i in found if abs(abs(slopes_seen[i]) - 1.0) < 1e-9), next(iter(found), None))
-    return "" if chosen is None else shift.written(names[chosen], 1.0 / slopes_seen[chosen])
+    slope, by_state, by_force = (torch.cat(parts, dim=-1).movedim(-1, 0) for parts in zip(*drawn, strict=True))
+    share = torch.einsum("kij,ki->kj", by_state, by_force) / (by_force * by_force).sum(dim=1, keepdim=True)
+    return slope, by_state, by_state - by_force[:, :, None] * share[:, None, :]
+
+
+def _one(
+    slope: torch.Tensor, change: torch.Tensor, beside: torch.Tensor, names: Sequence[str], deflection: Signal
+) -> dict[str, float]:
+    """Of the state, or of the two, that change nothing beside the direction of the port's force: by how much they move for a change of the
+    deflection by one; arguments as :func:`_seen` gives them.
+    """
+    own = names.index(deflection) if isinstance(deflection, str) and deflection in names else None
+    single = {i: float(slope[0, i]) for i in range(len(names)) if own is None or i == own}
+    fits = [i for i, by in single.items() if _constant(slope[:, i], by) and _little(beside[:, :, i], change[:, :, i])]
+    chosen = next((i for i in fits if abs(abs(single[i]) - 1.0) < 1e-9), next(iter(fits), None))
+    if chosen is not None:
+        return {names[chosen]: 1.0 / single[chosen]}
+    for i, j in ((i, j) for i in single for j in range(len(names)) if j != i):
+        size = (beside[:, :, j] ** 2).sum()
+        if not size > 0:
+            continue
+        factor = float(-(beside[:, :, i] * beside[:, :, j]).sum() / size)
+        along = slope[:, i] + factor * slope[:, j]
+        left, whole = (part[:, :, i] + factor * part[:, :, j] for part in (beside, change))
+        if factor and _constant(along, by := float(along[0])) and _little(left, whole):
+            return {names[i]: 1.0 / by, names[j]: float(f"{factor / by:.12g}")}
+    return {}
+
+
+def _constant(slopes: torch.Tensor, value: float) -> bool:
+    """Whether the deflection changes with the same slope everywhere."""
+    return value != 0.0 and bool((torch.abs(slopes - value) < 1e-9 * abs(value)).all())
+
+
+def _little(part: torch.Tensor, whole: torch.Tensor) -> bool:
+    """Whether a part (points, n_x) of changes of the rates is nothing but rounding, at every point."""
+    return bool((torch.linalg.vector_norm(part, dim=1) <= 1e-8 * torch.linalg.vector_norm(whole, dim=1)).all())
 
 
 def _slopes(

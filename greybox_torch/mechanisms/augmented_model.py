@@ -223,8 +223,7 @@ class AugmentedModel(GreyBoxModel):
             if a.mechanism.kinematic:
                 local, own, _ = self.given(a, x, u, p)
                 change = self.share(a, p) * (a.mechanism.deflection(local, own) - local.deflection)
-                name, per_deflection = shift.read(a.shifted_state)
-                x = x.replaced(**{name: x[name] + per_deflection * change})
+                x = shift.moved(x, a.shifted_state, change)
         return x
 
     def given(

@@ -48,6 +48,6 @@ def loaded_starts(
         local, own, _ = model.given(a, x, u, p)
         seen = np.broadcast_to(np.asarray(local.deflection), len(samples))
         moved = a.mechanism.loaded(seen, {n: float(own[n]) for n in own}) - seen
-        name, per_deflection = shift.read(a.shifted_state)
-        result[:, names.index(name)] += per_deflection * moved
+        for name, per_deflection in shift.read(a.shifted_state).items():
+            result[:, names.index(name)] += per_deflection * moved
     return result

@@ -38,18 +38,17 @@ def spring_force(
 ) -> Any:
     """The force at states ``x``, in the unit of a force at the port and with its sign.
 
-    Moving the state that a change of the deflection amounts to until the deflection is zero changes the rates by the spring's force alone,
+    Moving the states that a change of the deflection amounts to until the deflection is zero changes the rates by the spring's force alone,
     along the direction in which a force at the port changes them (:func:`greybox_torch.estimate.shifted_states.shifted_state`).
 
     Args:
-        shifted_state: that state, see :func:`greybox_torch.mechanisms.shift.written`.
+        shifted_state: those states, see :func:`greybox_torch.mechanisms.shift.written`.
         moved: from :func:`moved_states`.
         none: no force at any port.
     """
     site = next(q for q in base.all_ports if q.name == coupling)
     deflection = value_of(site.signals["deflection"], x, u, p)
-    name, per_deflection = shift.read(shifted_state)
-    released = x.replaced(**{name: x[name] - per_deflection * deflection})
+    released = shift.moved(x, shifted_state, -deflection)
     here, without = (base.derivative(s, u, p, none) for s in (x, released))
     # Where the spring is released, as beside its force one of one would be lost to rounding.
     pushed = base.derivative(released, u, p, with_one(none, coupling))

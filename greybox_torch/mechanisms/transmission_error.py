@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from greybox_torch.mechanisms.degenerate import not_seen_to_repeat
@@ -26,23 +27,27 @@ class TransmissionError(Mechanism):
     By virtual work that body feels de/dθ times the spring's force as well; ``reaction`` is the share of it that acts (an error on the
     far side of a reduction reaches the near side divided by the ratio). The force is the load that the model says the body carries, or
     else what the model's spring transmits. Where the body's speed ω is known, the coupling's damper answers the rate of the error, with
-    ``damping`` · e'(θ) ω.
+    ``damping`` · e'(θ) ω. ``as_force``: what the spring makes of the error, as a force on the coupling, for a model in which no state
+    reaches this spring alone (a twist from which the link's angle follows, by which a weight or another spring acts); the amplitudes are
+    levels then, and what the driving body feels beyond them, which is small, is left out.
     """
 
     name = "transmission_error"
     kinds = ("coupling",)
     needs = ("deflection", "position")
-    kinematic = True
     natural = ("reaction",)
     nature = "a coupling that is no linear spring"
     explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
     source = "T. Tuttle, W. Seering, IEEE Trans. Robotics and Automation 12(3), 1996"
     experiment = "slow constant speed over several turns, in both directions"
 
-    def __init__(self, order: float = 1.0, harmonics: int = 1) -> None:
-        self.order, self.harmonics = order, harmonics
+    def __init__(self, order: float = 1.0, harmonics: int = 1, as_force: bool = False) -> None:
+        self.order, self.harmonics, self.as_force = order, harmonics, as_force
+        self.kinematic = not as_force
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
+        if self.as_force:
+            return wave_parameters(around, self.order, self.harmonics)
         unit = around.units.get("deflection", "")
         return [
             *wave_parameters(around, self.order, self.harmonics, unit),
@@ -62,6 +67,9 @@ class TransmissionError(Mechanism):
             ),
         ]
 
+    def force(self, s: Signals, p: Signals, z: Signals) -> Any:
+        return waves(s.position, p, self.harmonics)
+
     def deflection(self, s: Signals, p: Signals) -> Any:
         return s.deflection + waves(s.position, p, self.harmonics)
 
@@ -73,13 +81,20 @@ class TransmissionError(Mechanism):
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With harmonics of the order found."""
-        return () if self.harmonics > 1 else ((TransmissionError(values["order"], HARMONICS), dict(values)),)
+        if self.harmonics > 1:
+            return ()
+        return ((TransmissionError(values["order"], HARMONICS, self.as_force), dict(values)),)
 
     def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
         """Its strongest wave alone."""
-        return strongest_alone(TransmissionError, values, self.harmonics)
+        return strongest_alone(partial(TransmissionError, as_force=self.as_force), values, self.harmonics)
+
+    def written_as_force(self) -> Mechanism:
+        return TransmissionError(self.order, self.harmonics, as_force=True)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
+        if self.as_force:
+            return [Probe(amplitudes_up_to(self.harmonics), {"order": self.order})]
         fixed = {"order": self.order, **({"damping": 0.0} if "speed" in around.ranges else {})}
         shares: list[dict[str, float]] = [{"reaction": 0.0}, {"reaction": 1.0}] if self._reacts(around) else [{}]
         return [Probe(amplitudes_up_to(self.harmonics), {**fixed, **share}) for share in shares]

@@ -6,7 +6,7 @@ import torch
 
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.once_per_model import once_per_model
-from greybox_torch.model.ports import Body, Coupling
+from greybox_torch.model.ports import Body, Coupling, value_of
 from greybox_torch.model.random_points import random_points
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.states_of import states_of
@@ -54,3 +54,21 @@ def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signal
         return False
     faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
     return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
+
+
+@once_per_model
+def _at_random(model: GreyBoxModel) -> tuple[Signals, Signals, Signals]:
+    """States, inputs and parameters at random points."""
+    *points, p = random_points(model)
+    return (*model.named_signals(*points), p)
+
+
+def to_ground(model: GreyBoxModel, coupling: Coupling, body: Body) -> bool:
+    """Whether a coupling holds one body to what stands still: it deflects as that body moves.
+
+    What repeats along the body's travel acts on it there as a force, whether in the spring or beside it.
+    """
+    if coupling.rate is None:
+        return False
+    rate, speed = (torch.as_tensor(value_of(signal, *_at_random(model))) for signal in (coupling.rate, body.speed))
+    return bool((rate == speed).all())

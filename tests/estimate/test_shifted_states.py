@@ -92,9 +92,41 @@ def test_a_ratio_that_is_estimated_is_not_relied_on(problem_of) -> None:
     assert shifted_state(model, problem.fixed, model.ports[1]) == "+100.0*q"
 
 
-@pytest.mark.parametrize("per_deflection", [1.0, -1.0, 100.0, -0.025])
+class Twisted(TwoMasses):
+    """The first mass's position and the twist are states; the second one's weight depends on what follows from both, ``share`` of it."""
+
+    def __init__(self, share: float = 1.0) -> None:
+        super().__init__()
+        self.share = share
+        self.ports = [
+            Body("first", speed="v", position="q"),
+            Coupling("spring", deflection="r", rate=lambda x, u, p: x.v - x.w),
+        ]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        spring = p.k * x.r + port.spring
+        weight, fall = p.g_r * torch.sin(self.share * x.q - x.r), p.g_q * torch.sin(x.q)
+        return {"q": x.v, "r": x.v - x.w, "v": u.force - spring - fall + port.first, "w": spring - weight}
+
+
+@pytest.mark.parametrize(
+    ("share", "gravity", "expected"),
+    [(1.0, (0.0, 0.0), "+r"), (1.0, (0.0, 2.0), "+r+q"), (0.01, (0.0, 2.0), "+r+100.0*q"), (1.0, (2.0, 2.0), "")],
+    ids=["no weight", "weight of the link", "behind a gear", "weights of both"],
+)
+def test_two_states_move_where_a_third_angle_follows_from_them(problem_of, share, gravity, expected) -> None:
+    """Seen: a wrist whose cables hold the link: its harmonic drive's error was not offered, and two ripples were told (0.85 each)."""
+    model = Twisted(share)
+    problem = problem_of(model, g_q=gravity[0], g_r=gravity[1])
+    found = shifted_state(model, problem, model.ports[1])
+    assert shift.read(found) == pytest.approx(shift.read(expected))
+
+
+@pytest.mark.parametrize("per_deflection", [1.0, -1.0, 100.0, -0.025, 1e-5])
 def test_what_is_written_is_read(per_deflection: float) -> None:
-    assert shift.read(shift.written("motor.angle", per_deflection)) == ("motor.angle", per_deflection)
+    states = {"motor.angle": per_deflection, "twist_2": -1.0}
+    assert shift.read(shift.written(states)) == states
+    assert shift.read("") == {} and shift.written({}) == ""
 
 
 @pytest.fixture

@@ -97,6 +97,22 @@ def test_harmonics_of_a_transmission_error(law) -> None:
     )
 
 
+def test_a_transmission_error_written_as_a_force_is_what_the_spring_makes_of_it(law, around) -> None:
+    """To first order k e(θ), for a model in which no state reaches the spring alone."""
+    form = TransmissionError(4.5, harmonics=3).written_as_force()
+    assert not form.kinematic and TransmissionError(4.5).kinematic
+    assert [p.name for p in form.parameters(around)] == ["a", "b", "a_2", "b_2", "a_3", "b_3", "order"]
+    assert {p.unit for p in form.parameters(around) if p.name != "order"} == {around.force_unit}
+    assert [probe.values for probe in form.probes(around)] == [{"order": 4.5}]
+    position = np.linspace(0.0, 3.0, 241)
+    given = {"a": 0.3, "b": 0.4, "order": 4.4}
+    force = law(TransmissionError(4.5, as_force=True), given, deflection=TWIST, position=position)
+    np.testing.assert_allclose(force, 0.3 * np.cos(4.4 * position) + 0.4 * np.sin(4.4 * position), atol=1e-15)
+    assert TransmissionError(4.5, as_force=True).richer(given)[0][0].options() == {**form.options(), "order": 4.4}
+    plainer = form.plainer({**given, "a_2": 0.0, "b_2": 0.0, "a_3": 0.0, "b_3": 0.0})
+    assert plainer is not None and plainer[0].options() == {"order": 4.4, "harmonics": 1, "as_force": True}
+
+
 SLIP = {"F": 1.5, "z_0": 0.01}
 
 

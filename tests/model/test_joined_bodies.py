@@ -9,7 +9,7 @@ import pytest
 from greybox_torch.diagnosis.screen.candidates import chain_candidates
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
-from greybox_torch.model.joined_bodies import bodies_apart, joined_bodies
+from greybox_torch.model.joined_bodies import bodies_apart, joined_bodies, to_ground
 
 
 def made(*couplings: tuple[str, Any]) -> GreyBoxModel:
@@ -92,3 +92,20 @@ def test_what_a_rigid_gear_moves_is_no_other_axis() -> None:
     ]
     apart = {body.name: [other.name for other in bodies_apart(model, body)] for body in model.ports}
     assert apart == {"a": ["c"], "wheel": ["c"], "c": ["a", "wheel"]}
+
+
+@pytest.mark.parametrize(
+    ("rate", "held"),
+    [
+        ("w_a", "a"),
+        (lambda x, u, p: x.w_a, "a"),
+        (lambda x, u, p: 2.0 * x.w_a, ""),
+        (between("a", "b"), ""),
+        (None, ""),
+    ],
+    ids=["its speed", "the same as a function", "through a gear", "between two", "no rate"],
+)
+def test_a_coupling_that_deflects_as_one_body_moves_holds_it_to_the_ground(rate, held) -> None:
+    model = made(("s", rate))
+    (coupling,) = (port for port in model.ports if isinstance(port, Coupling))
+    assert "".join(b.name for b in model.ports if isinstance(b, Body) and to_ground(model, coupling, b)) == held

@@ -37,12 +37,14 @@ def removes_too_little(state: SearchState, judged: Judgement, settings: Diagnosi
     if not state.effects or judged.by_windows_alone:
         return False
     share, times, _ = judged.left(True)
-    hardly_seen = all(e.mechanism.free for e in state.effects) and _points(judged) < settings.least_points_of_curve
+    hardly_seen = (
+        all(e.mechanism.free for e in state.effects) and points_gained(judged) < settings.least_points_of_curve
+    )
     least = settings.least_removed_by_curve if hardly_seen else settings.least_removed
     return share > 1.0 - least and times > settings.far_above_noise
 
 
-def _points(judged: Judgement) -> float:
+def points_gained(judged: Judgement) -> float:
     """By how many points the mean fit of the validation experiments rises with the effects."""
     refit, with_effects = (mean_fit(judged.judging(c).scores) for c in (judged.refit, judged.with_effects))
     return with_effects - refit

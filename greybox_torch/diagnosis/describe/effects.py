@@ -30,7 +30,12 @@ from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_a_curve, limited_by_what_is_left
+from greybox_torch.diagnosis.select.all_that_is_left import (
+    LeftInFreeRuns,
+    limited_by_a_curve,
+    limited_by_a_larger_rest,
+    limited_by_what_is_left,
+)
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -53,38 +58,36 @@ def describe(
     study: Study,
     state: SearchState,
     final: Final,
-    sums: tuple[float, ...],
+    left: LeftInFreeRuns,
     gains: Mapping[str, Gain],
     sizes: Mapping[str, float],
     removed: float,
-    missed: float = 0.0,
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
     Args:
         final: that hypothesis fitted to whole records.
-        sums: mean squared validation errors of the plain and the augmented model, summed over experiments.
+        left: what they leave in free runs of the validation experiments.
         gains: by effect, on held-out experiments, where there are any.
         sizes: by effect, the share of the whole mismatch that it accounts for.
         removed: the share of the validation error beyond the noise that they remove together.
-        missed: mean squared error of free validation runs with them, beyond the noise and in variances of what was measured.
     """
     hypothesis = state.current
     assert isinstance(hypothesis.model, AugmentedModel)
-    parts, left = _parts(state), LeftInFreeRuns(_left(sums), missed)
     return tuple(
-        replace(
-            _effect(study, state, hypothesis.model, e, final, removed * part, gains.get(e.prefix), left),
-            size=sizes.get(e.prefix, float("nan")),
+        _effect(
+            study,
+            state,
+            hypothesis.model,
+            e,
+            final,
+            removed * part,
+            gains.get(e.prefix),
+            left,
+            sizes.get(e.prefix, np.nan),
         )
-        for e, part in zip(hypothesis.effects, parts, strict=True)
+        for e, part in zip(hypothesis.effects, _parts(state), strict=True)
     )
-
-
-def _left(sums: tuple[float, ...]) -> float:
-    """Share of the plain model's error that the augmented one leaves; none where that overflows."""
-    before, after = sums
-    return after / before if np.isfinite(before) and before > 0 else 0.0
 
 
 def _parts(state: SearchState) -> list[float]:
@@ -105,6 +108,7 @@ def _effect(
     explained: float,
     gain: Gain | None,
     left: LeftInFreeRuns,
+    size: float,
 ) -> Effect:
     taken = state.step_beside_others(attachment.prefix)
     borne_out = part_borne_out(gain, study.settings)
@@ -114,6 +118,7 @@ def _effect(
     limits = (
         limited_by_what_is_left(remaining, state.current, study.settings, left, free=free),
         limited_by_a_curve(ceiling, study.settings, left),
+        limited_by_a_larger_rest(size, left, study.settings),
     )
     limit = min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
     probability = uncapped if limit is None else min(uncapped, limit.highest)
@@ -154,6 +159,7 @@ def _effect(
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),
         limited=why_limited(uncapped, limit, gain, study.settings),
+        size=size,
     )
 
 

@@ -88,8 +88,7 @@ def _as_force(
     alone = AugmentedModel(model.base, [attachment], model.surroundings)
     grid = torch.as_tensor(curve.values, dtype=torch.float64)
     zero = torch.zeros_like(grid)
-    name, per_deflection = shift.read(attachment.shifted_state)
-    x = Signals("state", {s.name: zero for s in alone.states}).replaced(**{name: per_deflection * grid})
+    x = shift.moved(Signals("state", {s.name: zero for s in alone.states}), attachment.shifted_state, grid)
     u = Signals("input", {one.name: zero for one in alone.inputs})
 
     def rates(of: AugmentedModel, force: float) -> torch.Tensor:

@@ -23,7 +23,7 @@ from greybox_torch.mechanisms.unknown_with_memory import UnknownWithMemory
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.idle_inputs import ports_in_use
-from greybox_torch.model.joined_bodies import joined_bodies
+from greybox_torch.model.joined_bodies import joined_bodies, to_ground
 from greybox_torch.model.ports import Actuator, driving_body, integrates_position
 
 ANGLES = ("rad", "deg", "rev", "turn")
@@ -69,7 +69,7 @@ def candidates(
     found = []
     for port in ports_in_use(model):
         shifted = shifts.get(port.name, "")
-        for mechanism in _curves(model, port, knots) if flexible else _laws():
+        for mechanism in _curves(model, port, knots) if flexible else _laws_at(model, port):
             if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
                 law = mechanism if shifted or not mechanism.kinematic else mechanism.written_as_force()
                 found += [] if law is None else [attach(model, port.name, law, shifted)]
@@ -84,6 +84,17 @@ def _laws() -> Iterable[Mechanism]:
     """Every law of the library, stops at both ends too: where a body goes from one to the other, neither alone holds it."""
     yield from (law() for law in LIBRARY.values())
     yield EndStop(both=True)
+
+
+def _laws_at(model: GreyBoxModel, port: Port) -> Iterable[Mechanism]:
+    """Every law, but no error of a gear between a body and what stands still: it is a force on the body that repeats along its travel."""
+    return (law for law in _laws() if not isinstance(law, TransmissionError) or _is_gear(model, port))
+
+
+def _is_gear(model: GreyBoxModel, port: Port) -> bool:
+    """Whether a coupling has a driving body, and a side that the body does not hold to the ground."""
+    driving = driving_body(model.ports)
+    return isinstance(port, Coupling) and driving is not None and not to_ground(model, port, driving)
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:
@@ -126,10 +137,9 @@ def periodic_candidates(
                 found += [attach(model, port.name, PositionDependentFriction(order))] if at is None else []
                 if order > least_ripple_order or not _is_angle(surroundings[port.name]):
                     found.append(attach(model, port.name, TorqueRipple(order)))
-            elif isinstance(port, Coupling) and driving_body(model.ports) is not None:
-                shifted = shifts.get(port.name, "")
-                if shifted:
-                    found.append(attach(model, port.name, TransmissionError(order), shifted))
+            elif _is_gear(model, port):
+                shifted, error = shifts.get(port.name, ""), TransmissionError(order)
+                found.append(attach(model, port.name, error if shifted else error.written_as_force(), shifted))
     return found
 
 

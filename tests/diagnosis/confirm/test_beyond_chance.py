@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out, within
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.hypothesis.final import finish
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -51,7 +52,9 @@ def test_a_finding_and_its_statement_are_no_surer_than_held_out_experiments_are(
     state = found(search, effect, {f"{effect.prefix}.F_c": 0.05})
     final, told = finish(state.current), []
     for gain in (Gain(0.9, 0.1), Gain(0.175, 0.138)):
-        (one,) = describe(search.study, state, final, (1.0, 0.001), {effect.prefix: gain}, {effect.prefix: 0.9}, 0.9)
+        (one,) = describe(
+            search.study, state, final, LeftInFreeRuns(0.001), {effect.prefix: gain}, {effect.prefix: 0.9}, 0.9
+        )
         told.append(one)
     sure, unsure = told
     assert unsure.probability == pytest.approx(

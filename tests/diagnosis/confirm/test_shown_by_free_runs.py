@@ -91,12 +91,12 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
         gains={},
         others=None,
         complete=True,
-        sums=(1.0, 0.5),
+        left=None,
         removed=0.5,
     )
     monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
     monkeypatch.setattr(pipeline, "describe", lambda *_: ("friction", "bias"))
-    monkeypatch.setattr(pipeline, "refinements", lambda *_: set(small))
+    monkeypatch.setattr(pipeline, "small_ones", lambda *_: set(small))
     monkeypatch.setattr(pipeline, "shown_by_free_runs", lambda *_: {FRICTION.prefix})
     told = pipeline._told(found)
     assert told == ((("bias",), ("friction",)) if len(small) == 1 else (("friction",), ("bias",)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections import defaultdict
 from typing import ClassVar
 
@@ -88,7 +89,24 @@ def test_play_is_a_force_where_no_state_reaches_the_spring_alone(arm_search) -> 
     found = candidates(RobotArm(), shifts, arm_search.surroundings, flexible=False)
     plays = {a.port: (a.shifted_state, a.mechanism.options()) for a in found if a.mechanism.name == "backlash"}
     assert plays == {"gear_spring": ("", {"as_force": True}), "arm_spring": ("+arm_twist", {"as_force": False})}
+    found += periodic_candidates(RobotArm(), shifts, arm_search.surroundings, [7.3])
+    errors = {
+        (a.port, a.shifted_state, a.mechanism.as_force) for a in found if isinstance(a.mechanism, TransmissionError)
+    }
+    assert errors == {("gear_spring", "", True), ("arm_spring", "+arm_twist", False)}
     assert "gear_spring" not in {a.port for a in found if a.mechanism.kinematic}
+
+
+def test_a_spring_to_the_ground_is_no_gear(arm_search, monkeypatch) -> None:
+    """Seen: the cogging of a gantry (ripple at its carriage), told as an error of its cable chain, a spring to the ground (0.85)."""
+    module = sys.modules[candidates.__module__]  # the package has the function by the same name
+    monkeypatch.setattr(
+        module, "to_ground", lambda model, port, body: (port.name, body.name) == ("gear_spring", "motor")
+    )
+    around = (arm_search.shifts, arm_search.surroundings)
+    found = candidates(RobotArm(), *around, flexible=False) + periodic_candidates(RobotArm(), *around, [7.3])
+    assert {a.port for a in found if a.mechanism.name == "transmission_error"} == {"arm_spring"}
+    assert {a.port for a in found if a.mechanism.name == "backlash"} == {"gear_spring", "arm_spring"}
 
 
 def test_attach_finds_the_body_that_a_position_belongs_to() -> None:

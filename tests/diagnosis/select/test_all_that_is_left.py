@@ -7,7 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, limited_by_a_curve, limited_by_what_is_left
+from greybox_torch.diagnosis.select.all_that_is_left import (
+    LeftInFreeRuns,
+    limited_by_a_curve,
+    limited_by_a_larger_rest,
+    limited_by_what_is_left,
+)
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 SETTINGS, SAMPLES = DiagnosisSettings(), 20_000
@@ -72,3 +77,22 @@ def test_a_name_that_a_curve_outdoes_where_free_runs_leave_much_is_unsure(ceilin
     assert (None if limit is None else limit.highest) == highest
     if limit is not None:
         assert "85 % of what a free curve does in its place, and free runs leave 6.5 %" in limit.why
+
+
+@pytest.mark.parametrize(
+    ("size", "left", "highest"),
+    [
+        (0.19, LeftInFreeRuns(0.53, times_noise=3.1), 0.5),
+        (0.86, LeftInFreeRuns(0.42, times_noise=6.9), None),
+        (0.19, LeftInFreeRuns(0.53, times_noise=2.1), None),
+        (np.nan, LeftInFreeRuns(0.53, times_noise=3.1), None),
+        (0.19, LeftInFreeRuns(None, times_noise=3.1), None),
+    ],
+    ids=["a part of more", "the larger part", "hardly more than noise", "nobody knows its size", "no free run tells"],
+)
+def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
+    """Seen: small laws of a complete strut, told as an end stop that is touched half of the time (0.97)."""
+    limit = limited_by_a_larger_rest(size, left, SETTINGS)
+    assert (None if limit is None else limit.highest) == highest
+    if limit is not None:
+        assert "19 % of the mismatch, of which free runs leave 53 %" in limit.why

@@ -1,0 +1,44 @@
+"""Effects that account for less of the mismatch than is left with all of them are no findings where the fit hardly rises."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from greybox_torch.diagnosis.confirm import less_than_is_left as module
+from greybox_torch.diagnosis.confirm.less_than_is_left import less_than_is_left
+from greybox_torch.diagnosis.settings import DiagnosisSettings
+
+SETTINGS = DiagnosisSettings()
+SIZES = {"nut.end_stop": 0.19, "strut.stiffness": 0.6}
+
+
+def asked(
+    monkeypatch, share: float, times: float, points: float, *, windows: bool = False, effects: bool = True
+) -> set[str]:
+    monkeypatch.setattr(module, "points_gained", lambda judged: points)
+    judged: Any = SimpleNamespace(by_windows_alone=windows, left=lambda effects: (share, times, "sweep"))
+    state: Any = SimpleNamespace(effects=tuple(SIZES) if effects else (), prefixes=set(SIZES))
+    return less_than_is_left(state, SIZES, judged, SETTINGS)
+
+
+def test_less_than_free_runs_leave_is_a_part_of_it(monkeypatch) -> None:
+    """Seen: eleven small laws of a complete strut, told as an end stop (0.97), 19 % of the mismatch, of which 53 % was left."""
+    assert asked(monkeypatch, 0.53, 3.1, 0.6) == {"nut.end_stop"}
+    assert asked(monkeypatch, 0.82, 5.0, 0.3) == set(SIZES)
+
+
+@pytest.mark.parametrize(
+    ("share", "times", "points"),
+    [(0.1, 20.0, 0.6), (0.53, 2.0, 0.6), (0.53, float("nan"), 0.6), (0.79, 22.0, 6.8)],
+    ids=["little is left", "hardly more than noise", "nothing shows the noise", "the fit rises"],
+)
+def test_else_it_stands(monkeypatch, share, times, points) -> None:
+    assert asked(monkeypatch, share, times, points) == set()
+
+
+def test_only_free_runs_and_effects_are_asked(monkeypatch) -> None:
+    assert asked(monkeypatch, 0.53, 3.1, 0.6, windows=True) == set()
+    assert asked(monkeypatch, 0.53, 3.1, 0.6, effects=False) == set()
