@@ -189,8 +189,7 @@ def without_refinements_alone(found: Findings) -> Findings:
     that was 39 % of the held-out error over windows of an eighth of the record, within chance, and 83 % over those of a quarter.
     """
     study, state = found.study, found.state
-    small = small_ones(found, sizes(study, state, found.gains))
-    if small != state.prefixes or not state.effects:
+    if not state.effects or small_ones(found, sizes(study, state, found.gains)) != state.prefixes:
         return found
     if shown_by_free_runs(study, state, found.gains, found.judged):
         return found

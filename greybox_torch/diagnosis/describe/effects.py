@@ -30,12 +30,7 @@ from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.all_that_is_left import (
-    LeftInFreeRuns,
-    limited_by_a_curve,
-    limited_by_a_larger_rest,
-    limited_by_what_is_left,
-)
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest_limit
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -115,12 +110,7 @@ def _effect(
     uncapped, alternatives = _probability(study, state, attachment, taken, borne_out)
     remaining, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
     ceiling = None if taken is None else ceiling_share(taken, state.memory_step)
-    limits = (
-        limited_by_what_is_left(remaining, state.current, study.settings, left, free=free),
-        limited_by_a_curve(ceiling, study.settings, left),
-        limited_by_a_larger_rest(size, left, study.settings),
-    )
-    limit = min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
+    limit = lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=size)
     probability = uncapped if limit is None else min(uncapped, limit.highest)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)

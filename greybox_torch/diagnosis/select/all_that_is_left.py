@@ -31,6 +31,25 @@ class Limit:
     why: str
 
 
+def lowest_limit(
+    share: float,
+    left: Hypothesis,
+    settings: DiagnosisSettings,
+    free_runs: LeftInFreeRuns,
+    *,
+    free: bool,
+    ceiling: float | None,
+    size: float,
+) -> Limit | None:
+    """What limits a finding most, of all that limits it; None where nothing does. Arguments as for the functions below."""
+    limits = (
+        limited_by_what_is_left(share, left, settings, free_runs, free=free),
+        limited_by_a_curve(ceiling, settings, free_runs),
+        limited_by_a_larger_rest(size, free_runs, settings),
+    )
+    return min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
+
+
 def limited_by_what_is_left(
     share: float,
     left: Hypothesis,

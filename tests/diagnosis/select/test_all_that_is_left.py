@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.select.all_that_is_left import (
     limited_by_a_curve,
     limited_by_a_larger_rest,
     limited_by_what_is_left,
+    lowest_limit,
 )
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -96,3 +97,12 @@ def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
     assert (None if limit is None else limit.highest) == highest
     if limit is not None:
         assert "19 % of the mismatch, of which free runs leave 53 %" in limit.why
+
+
+def test_the_lowest_limit_counts(left_much) -> None:
+    much, rest = left_much(1.0), LeftInFreeRuns(0.53, times_noise=3.1)
+    by_noise = lowest_limit(0.3, much, SETTINGS, LeftInFreeRuns(), free=False, ceiling=None, size=0.9)
+    assert by_noise is not None and by_noise.highest == SETTINGS.highest_probability_far_above_noise
+    by_rest = lowest_limit(0.3, much, SETTINGS, rest, free=False, ceiling=None, size=0.19)
+    assert by_rest is not None and "19 % of the mismatch" in by_rest.why
+    assert lowest_limit(0.3, left_much(0.011), SETTINGS, LeftInFreeRuns(), free=False, ceiling=1.0, size=0.9) is None
