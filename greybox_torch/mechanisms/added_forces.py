@@ -19,12 +19,20 @@ class AddedForces:
     Args:
         seen: the states with the deflections changed by kinematic laws.
         acting: the inputs as actuators pass them on; ``reaching`` as they reach each law at an actuator, by prefix.
+        x: the states themselves: bodies are there, whatever a spring sees.
     """
 
     def __init__(
-        self, model: AugmentedModel, seen: Signals, reaching: Mapping[str, Signals], acting: Signals, p: Signals
+        self,
+        model: AugmentedModel,
+        seen: Signals,
+        reaching: Mapping[str, Signals],
+        acting: Signals,
+        p: Signals,
+        x: Signals,
     ) -> None:
         self._model, self._seen, self._reaching, self._acting, self._p = model, seen, reaching, acting, p
+        self._x = x
 
     def to(self, before: Signals) -> Signals:
         """The forces ``before``, and those of all laws."""
@@ -45,7 +53,9 @@ class AddedForces:
             site = model.local.ports[a.port]
             if isinstance(site, Sensor):
                 continue  # it shows forces, and adds none
-            local, own, memory = model.given(a, self._seen, self._reaching.get(a.prefix, self._acting), p, under)
+            local, own, memory = model.given(
+                a, self._seen, self._reaching.get(a.prefix, self._acting), p, under, self._x
+            )
             if not a.mechanism.kinematic and not isinstance(site, Actuator):
                 forces[a.port] = forces[a.port] + model.share(a, p) * a.mechanism.force(local, own, memory)
             local = model.local.with_load(a, local, self._seen, self._acting, p)

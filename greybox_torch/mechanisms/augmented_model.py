@@ -88,11 +88,11 @@ class AugmentedModel(GreyBoxModel):
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
         seen = self._seen_states(x, u, p)
         acting, reaching = self.paths.inputs(x, u, p)
-        forces = self._forces(seen, reaching, acting, p, port)
+        forces = self._forces(seen, reaching, acting, p, port, x)
         extra: dict[str, Any] = {}
         shown = self._shown(seen, x, acting, p, forces)
         for a in (a for a in self.attachments if a.mechanism.states(self.surroundings[a.port])):
-            local, own, memory = self.given(a, seen, reaching.get(a.prefix, acting), p, forces)
+            local, own, memory = self.given(a, seen, reaching.get(a.prefix, acting), p, forces, x)
             local = local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
             for name, rate in a.mechanism.rates(local, own, memory).items():
                 extra[f"{a.prefix}.{name}"] = rate
@@ -111,16 +111,16 @@ class AugmentedModel(GreyBoxModel):
         acting, reaching = self.paths.inputs(x, u, p)
         if not self.base.shows_forces:
             return dict(self.base.output(x, acting, p))
-        forces = self._forces(self._seen_states(x, u, p), reaching, acting, p, port)
+        forces = self._forces(self._seen_states(x, u, p), reaching, acting, p, port, x)
         return dict(self.base.outputs_with(x, acting, p, forces))
 
-    def shown_forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals | None:
+    def shown_forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any, x: Any) -> Signals | None:
         """:meth:`_forces` where an output shows them; else no law asks for them, and evaluating every law would take long."""
-        return self._forces(seen, reaching, acting, p, port) if self.base.shows_forces else None
+        return self._forces(seen, reaching, acting, p, port, x) if self.base.shows_forces else None
 
-    def _forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any) -> Signals:
+    def _forces(self, seen: Any, reaching: Any, acting: Any, p: Any, port: Any, x: Any) -> Signals:
         """The forces at the ports: ``port``, and what the attached laws add to them (:class:`AddedForces`)."""
-        return AddedForces(self, seen, reaching, acting, p).to(port)
+        return AddedForces(self, seen, reaching, acting, p, x).to(port)
 
     def admissible(self, p: Any) -> dict[str, Any]:
         return self.base.admissible(p)
@@ -169,13 +169,15 @@ class AugmentedModel(GreyBoxModel):
             return {}
         return self.paths.outputs(self.base.outputs_with(seen, acting, p, forces), x, p)[1]
 
-    def signals_at(self, x: Signals, u: Signals, p: Signals, forces: Signals | None) -> Callable[[Attachment], Signals]:
+    def signals_at(
+        self, x: Signals, u: Signals, p: Signals, forces: Signals | None, unmoved: Signals | None = None
+    ) -> Callable[[Attachment], Signals]:
         """The signals at the port of a law, with what the laws before it at an actuator or a sensor pass on."""
         acting, reaching = self.paths.inputs(x, u, p)
         shown = self._shown(x, x, acting, p, forces or self.local.no_forces())
 
         def at(a: Attachment) -> Signals:
-            local = self.local.at(a, x, reaching.get(a.prefix, acting), p, forces)
+            local = self.local.at(a, x, reaching.get(a.prefix, acting), p, forces, unmoved)
             return local.replaced(output=shown[a.prefix]) if a.prefix in shown else local
 
         return at
@@ -214,8 +216,8 @@ class AugmentedModel(GreyBoxModel):
         """The signals that an attached mechanism sees."""
         seen = self._seen_states(x, u, p)
         acting, reaching = self.paths.inputs(x, u, p)
-        forces = self.shown_forces(seen, reaching, acting, p, self.local.no_forces())
-        return self.signals_at(seen, u, p, forces)(attachment)
+        forces = self.shown_forces(seen, reaching, acting, p, self.local.no_forces(), x)
+        return self.signals_at(seen, u, p, forces, x)(attachment)
 
     def _seen_states(self, x: Signals, u: Any, p: Any) -> Signals:
         """States with the deflections changed by kinematic mechanisms."""
@@ -227,10 +229,16 @@ class AugmentedModel(GreyBoxModel):
         return x
 
     def given(
-        self, a: Attachment, x: Signals, u: Signals, p: Signals, forces: Signals | None = None
+        self,
+        a: Attachment,
+        x: Signals,
+        u: Signals,
+        p: Signals,
+        forces: Signals | None = None,
+        unmoved: Signals | None = None,
     ) -> tuple[Signals, Signals, Signals]:
         """What a law is a function of: local signals, own parameters, memory."""
-        return self.local.at(a, x, u, p, forces), self.local.parameters(a, p), self.local.memory(a, x)
+        return self.local.at(a, x, u, p, forces, unmoved), self.local.parameters(a, p), self.local.memory(a, x)
 
     def share(self, a: Attachment, p: Signals) -> Any:
         return p[f"{a.prefix}.{SHARE}"] if a.prefix in self.shared else 1.0

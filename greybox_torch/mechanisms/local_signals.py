@@ -33,18 +33,21 @@ class LocalSignals:
         self._moved: dict[str, list[str]] = {}
         self._grouped: tuple[tuple[str, ...], dict[str, dict[str, str]]] = ((), {})
 
-    def at(self, a: Attachment, x: Any, u: Any, p: Any, forces: Signals | None = None) -> Signals:
+    def at(
+        self, a: Attachment, x: Any, u: Any, p: Any, forces: Signals | None = None, unmoved: Signals | None = None
+    ) -> Signals:
         """The signals at the port of an attachment; ``forces`` at the ports, where others are attached (a sensor may show them, and they
-        change the rate at a port).
+        change the rate at a port); ``unmoved`` the states where laws have moved ``x`` to change a deflection: bodies are where they were.
         """
+        true = x if unmoved is None else unmoved
         site = self.ports[a.port]
         values: dict[str, Any] = {
             name: value_of(signal, x, u, p) for name, signal in site.signals.items() if name != "position"
         }
         if "position" in (*a.mechanism.needs, getattr(a.mechanism, "signal", ""), getattr(a.mechanism, "factor", "")):
-            values["position"] = self._position(a.position, x, u, p)
+            values["position"] = self._position(a.position, true, u, p)
         if isinstance(site, Body) and getattr(a.mechanism, "signal", "") == TURN:
-            values[TURN] = within_turn(site, x, u, p)
+            values[TURN] = within_turn(site, true, u, p)
         if isinstance(site, Coupling) and a.position and self._shows_load(a):
             values["load"] = value_of(self.body(a.position).signals["load"], x, u, p)
         if a.mechanism.kinematic and a.position:
@@ -64,7 +67,7 @@ class LocalSignals:
                 value, slope, at = (u[f"{a.prefix}.{n}"] for n in names)
                 values[names[0]] = value + (p[f"{a.prefix}.T"] - at) * slope
         values |= {f"input@{name}": u[name] for name in a.mechanism.drives}
-        values |= {f"position@{link}": self._position(link, x, u, p) for link in a.mechanism.links}
+        values |= {f"position@{link}": self._position(link, true, u, p) for link in a.mechanism.links}
         values |= {one: self._from_elsewhere(site, one, x, u, p, forces) for one in a.mechanism.reads}
         values |= self.clock(x)
         return Signals("signal", values)

@@ -50,7 +50,7 @@ def _begin(
     """Set the memories of the attached laws in ``states`` (W, n_x); the states with them, and the inputs."""
     names = [s.name for s in model.states]
     x, u = model.named_signals(torch.as_tensor(states.T.copy()), torch.as_tensor(records.u[:, samples]))
-    forces = model.shown_forces(x, {}, u, p, model.local.no_forces())
+    forces = model.shown_forces(x, {}, u, p, model.local.no_forces(), x)
     at = model.signals_at(x, u, p, forces)
     for a in (a for a in model.attachments if a.mechanism.states(model.surroundings[a.port])):
         begun = a.mechanism.starts(at(a))
