@@ -92,9 +92,10 @@ def _laws_at(model: GreyBoxModel, port: Port) -> Iterable[Mechanism]:
 
 
 def _is_gear(model: GreyBoxModel, port: Port) -> bool:
-    """Whether a coupling has a driving body, and a side that the body does not hold to the ground."""
-    driving = driving_body(model.ports)
-    return isinstance(port, Coupling) and driving is not None and not to_ground(model, port, driving)
+    """Whether a port is a coupling that holds no body to the ground, of a model with a driving body."""
+    if not isinstance(port, Coupling) or driving_body(model.ports) is None:
+        return False
+    return not any(to_ground(model, port, body) for body in model.ports if isinstance(body, Body))
 
 
 def chain_candidates(model: GreyBoxModel, surroundings: Mapping[str, Surroundings]) -> list[Attachment]:

@@ -97,12 +97,11 @@ def test_play_is_a_force_where_no_state_reaches_the_spring_alone(arm_search) -> 
     assert "gear_spring" not in {a.port for a in found if a.mechanism.kinematic}
 
 
-def test_a_spring_to_the_ground_is_no_gear(arm_search, monkeypatch) -> None:
+@pytest.mark.parametrize("held", ["motor", "arm"])
+def test_a_spring_to_the_ground_is_no_gear(arm_search, monkeypatch, held) -> None:
     """Seen: the cogging of a gantry (ripple at its carriage), told as an error of its cable chain, a spring to the ground (0.85)."""
     module = sys.modules[candidates.__module__]  # the package has the function by the same name
-    monkeypatch.setattr(
-        module, "to_ground", lambda model, port, body: (port.name, body.name) == ("gear_spring", "motor")
-    )
+    monkeypatch.setattr(module, "to_ground", lambda model, port, body: (port.name, body.name) == ("gear_spring", held))
     around = (arm_search.shifts, arm_search.surroundings)
     found = candidates(RobotArm(), *around, flexible=False) + periodic_candidates(RobotArm(), *around, [7.3])
     assert {a.port for a in found if a.mechanism.name == "transmission_error"} == {"arm_spring"}
