@@ -1,8 +1,8 @@
-"""The state through which a change of a coupling's deflection acts: where kinematic mechanisms are attached."""
+"""The states through which a change of a coupling's deflection acts: where kinematic mechanisms are attached."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 
 import numpy as np
 import torch
@@ -10,14 +10,13 @@ import torch
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.mechanisms import shift
 from greybox_torch.model import Coupling, GreyBoxModel, Signals
-from greybox_torch.model.ports import Signal
 
 OTHER = 1.3
 """Times the values of the free parameters, at which a slope has to be the same: a gear ratio that is estimated is another one tomorrow."""
 
 
 def shifted_states(model: GreyBoxModel, problem: Problem) -> dict[str, str]:
-    """Of every coupling, the state that a change of its deflection amounts to, see :func:`shifted_state`."""
+    """Of every coupling, the states that a change of its deflection amounts to, see :func:`shifted_state`."""
     return {port.name: shifted_state(model, problem, port) for port in model.ports if isinstance(port, Coupling)}
 
 
@@ -30,11 +29,14 @@ def shifted_state(model: GreyBoxModel, problem: Problem, port: Coupling, *, poin
     does it, two that move together may: of a motor's angle and a twist, from which a link's angle follows that its weight depends on,
     both move, and the link's angle does not. Empty where nothing does.
     """
-    found = _one(*_seen(model, problem, port, points), [s.name for s in model.states], port.deflection)
-    return shift.written(found)
+    names = [s.name for s in model.states]
+    own = names.index(port.deflection) if isinstance(port.deflection, str) else None
+    tried, changes = range(len(names)) if own is None else [own], _changes(model, problem, port, points)
+    found = _one_state(*changes, tried) or _two_states(*changes, tried)
+    return shift.written({names[i]: by for i, by in found.items()})
 
 
-def _seen(
+def _changes(
     model: GreyBoxModel, problem: Problem, port: Coupling, points: int
 ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
     """At random points, with the parameters as they are and with the free ones changed: slopes of the deflection (points, n_x), and what a
@@ -56,27 +58,29 @@ def _seen(
     return slope, by_state, by_state - by_force[:, :, None] * share[:, None, :]
 
 
-def _one(
-    slope: torch.Tensor, change: torch.Tensor, beside: torch.Tensor, names: Sequence[str], deflection: Signal
-) -> dict[str, float]:
-    """Of the state, or of the two, that change nothing beside the direction of the port's force: by how much they move for a change of the
-    deflection by one; arguments as :func:`_seen` gives them.
+def _one_state(
+    slope: torch.Tensor, change: torch.Tensor, beside: torch.Tensor, tried: Iterable[int]
+) -> dict[int, float]:
+    """The state that changes nothing beside the direction of the port's force: by how much it moves for a change of the deflection by one.
+
+    Other arguments as :func:`_changes` gives them; empty where no state does it.
     """
-    own = names.index(deflection) if isinstance(deflection, str) and deflection in names else None
-    single = {i: float(slope[0, i]) for i in range(len(names)) if own is None or i == own}
-    fits = [i for i, by in single.items() if _constant(slope[:, i], by) and _little(beside[:, :, i], change[:, :, i])]
-    chosen = next((i for i in fits if abs(abs(single[i]) - 1.0) < 1e-9), next(iter(fits), None))
-    if chosen is not None:
-        return {names[chosen]: 1.0 / single[chosen]}
-    for i, j in ((i, j) for i in single for j in range(len(names)) if j != i):
-        size = (beside[:, :, j] ** 2).sum()
-        if not size > 0:
-            continue
-        factor = float(-(beside[:, :, i] * beside[:, :, j]).sum() / size)
-        along = slope[:, i] + factor * slope[:, j]
-        left, whole = (part[:, :, i] + factor * part[:, :, j] for part in (beside, change))
+    per_state = {i: float(slope[0, i]) for i in tried}
+    fits = [i for i, by in per_state.items() if _constant(slope[:, i], by) and _little(beside[..., i], change[..., i])]
+    chosen = next((i for i in fits if abs(abs(per_state[i]) - 1.0) < 1e-9), next(iter(fits), None))
+    return {} if chosen is None else {chosen: 1.0 / per_state[chosen]}
+
+
+def _two_states(
+    slope: torch.Tensor, change: torch.Tensor, beside: torch.Tensor, tried: Iterable[int]
+) -> dict[int, float]:
+    """The same of two states that move together, the first of them of ``tried``: the second makes up for what the first changes beside."""
+    for i, j in ((i, j) for i in tried for j in range(slope.shape[1]) if j != i):
+        size = (beside[..., j] ** 2).sum()
+        factor = float(-(beside[..., i] * beside[..., j]).sum() / size) if size > 0 else 0.0
+        along, left, whole = (part[..., i] + factor * part[..., j] for part in (slope, beside, change))
         if factor and _constant(along, by := float(along[0])) and _little(left, whole):
-            return {names[i]: 1.0 / by, names[j]: float(f"{factor / by:.12g}")}
+            return {i: 1.0 / by, j: float(f"{factor / by:.12g}")}  # as a ratio is written, not as rounding leaves it
     return {}
 
 

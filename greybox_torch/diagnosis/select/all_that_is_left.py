@@ -118,7 +118,7 @@ def limited_by_a_larger_rest(size: float, left: LeftInFreeRuns, settings: Diagno
     Args:
         size: share of the mismatch that the finding accounts for; NaN where nobody knows.
     """
-    if left.of_mismatch is None or not size < left.of_mismatch or left.times_noise <= settings.far_above_noise:
+    if left.of_mismatch is None or not size < left.of_mismatch or not left.times_noise > settings.far_above_noise:
         return None
     return Limit(
         settings.highest_probability_where_most_is_left,

@@ -88,8 +88,16 @@ def test_a_name_that_a_curve_outdoes_where_free_runs_leave_much_is_unsure(ceilin
         (0.19, LeftInFreeRuns(0.53, times_noise=2.1), None),
         (np.nan, LeftInFreeRuns(0.53, times_noise=3.1), None),
         (0.19, LeftInFreeRuns(None, times_noise=3.1), None),
+        (0.19, LeftInFreeRuns(0.53, times_noise=np.nan), None),
     ],
-    ids=["a part of more", "the larger part", "hardly more than noise", "nobody knows its size", "no free run tells"],
+    ids=[
+        "a part of more",
+        "the larger part",
+        "hardly more than noise",
+        "nobody knows its size",
+        "no free run tells",
+        "nor the noise",
+    ],
 )
 def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
     """Seen: small laws of a complete strut, told as an end stop that is touched half of the time (0.97)."""
