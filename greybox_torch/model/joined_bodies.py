@@ -13,6 +13,13 @@ from greybox_torch.model.states_of import states_of
 
 
 @once_per_model
+def _at_random(model: GreyBoxModel) -> tuple[Signals, Signals, Signals]:
+    """States, inputs and parameters at random points."""
+    *points, p = random_points(model)
+    return (*model.named_signals(*points), p)
+
+
+@once_per_model
 def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
     """The bodies in groups that couplings join, both as they are declared; a body that none joins is a group of its own.
 
@@ -20,8 +27,7 @@ def joined_bodies(model: GreyBoxModel) -> list[list[Body]]:
     """
     bodies = [port for port in model.ports if isinstance(port, Body)]
     groups = [[body] for body in bodies]
-    *points, p = random_points(model)
-    x, u = model.named_signals(*points)
+    x, u, p = _at_random(model)
     for coupling in (port for port in model.ports if isinstance(port, Coupling)):
         joined = {body.name for body in bodies if turns_with(coupling, body, x, u, p)}
         together = [group for group in groups if joined & {body.name for body in group}]
@@ -54,13 +60,6 @@ def turns_with(coupling: Coupling, body: Body, x: Signals, u: Signals, p: Signal
         return False
     faster = x.replaced(**{body.speed: x[body.speed] + 1.0})
     return bool(torch.as_tensor(coupling.rate(faster, u, p) != coupling.rate(x, u, p)).any())
-
-
-@once_per_model
-def _at_random(model: GreyBoxModel) -> tuple[Signals, Signals, Signals]:
-    """States, inputs and parameters at random points."""
-    *points, p = random_points(model)
-    return (*model.named_signals(*points), p)
 
 
 def to_ground(model: GreyBoxModel, coupling: Coupling, body: Body) -> bool:

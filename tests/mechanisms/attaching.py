@@ -6,13 +6,18 @@ from typing import Any
 
 import numpy as np
 
+import greybox_torch as gt
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.shifted_states import shifted_state
+from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
-from greybox_torch.model import Balance, GreyBoxModel, Input, Output, Parameter, State
+from greybox_torch.model import Balance, Coupling, GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.passes import Pass
 from greybox_torch.simulation.records import Records
+from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import whole_records
 from greybox_torch.systems import RobotArm
 
@@ -42,6 +47,21 @@ def records_of(samples: int, lengths: tuple[int, ...] = (), hold: str = "zoh", s
     last = np.cumsum(sizes) - 1
     steps = np.full(samples, step)
     return Records(u[None], np.zeros((1, samples)), steps, last - sizes + 1, last, ("",) * len(sizes), hold)
+
+
+def coupling_along_a_free_run(model: GreyBoxModel, name: str) -> tuple[Surroundings, str]:
+    """The surroundings of a coupling and the states that its deflection can be changed by, along a recorded free run from rest."""
+    records = records_of(400)
+    at_rest = np.zeros((1, len(model.states)))
+    run = EagerStepper.of(model, (), "cpu", "double").run(
+        records, Pass(whole_records(records), values_of(model), at_rest)
+    )
+    outputs = (o.name for o in model.outputs)
+    columns = {model.inputs[0].name: records.u[0], **dict(zip(outputs, run.y[0].T, strict=True))}
+    dataset = gt.DataSet([gt.Recording.from_arrays("swing", columns, sample_time=STEP, role="estimation")])
+    problem = make_problem(dataset, model, dataset.estimation())
+    (coupling,) = (q for q in model.ports if isinstance(q, Coupling) and q.name == name)
+    return survey(model, problem, Simulator.of(model))[name], shifted_state(model, problem, coupling)
 
 
 def attached(model: GreyBoxModel, around: Surroundings, *effects: Attachment, **options: Any) -> AugmentedModel:

@@ -8,10 +8,6 @@ import numpy as np
 import pytest
 import torch
 
-import greybox_torch as gt
-from greybox_torch.estimate.problem import make_problem
-from greybox_torch.estimate.shifted_states import shifted_state
-from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.spring_force import moved_states, spring_force
@@ -20,10 +16,10 @@ from greybox_torch.model import Signals
 from greybox_torch.model.random_points import random_points
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import Simulator, make_stepper
+from greybox_torch.simulation.simulator import make_stepper
 from greybox_torch.simulation.windows import whole_records
 from tests.machines.geared_drum import GearedDrum
-from tests.mechanisms.attaching import STEP, attached, free_run, records_of, starts, values_of
+from tests.mechanisms.attaching import attached, coupling_along_a_free_run, free_run, records_of, starts
 
 DRUM = GearedDrum()
 NONE = Signals("port", {q.name: torch.zeros((), dtype=torch.float64) for q in DRUM.all_ports})
@@ -33,15 +29,7 @@ MOVING = np.array([[0.7, 0.13, 12.0, 2.0]])
 @pytest.fixture
 def gear() -> tuple[Surroundings, str]:
     """The gear's surroundings and the state that its deflection can be changed by, along a recorded free run."""
-    records = records_of(400)
-    y = EagerStepper.of(DRUM, (), "cpu", "double").run(
-        records, Pass(whole_records(records), values_of(DRUM), np.zeros((1, 4)))
-    )
-    columns = {"torque": records.u[0], **dict(zip(("motor", "drum"), y.y[0].T, strict=True))}
-    dataset = gt.DataSet([gt.Recording.from_arrays("swing", columns, sample_time=STEP, role="estimation")])
-    problem = make_problem(dataset, DRUM, dataset.estimation())
-    (coupling,) = (q for q in DRUM.ports if q.name == "gear")
-    return survey(DRUM, problem, Simulator.of(DRUM))["gear"], shifted_state(DRUM, problem, coupling)
+    return coupling_along_a_free_run(DRUM, "gear")
 
 
 def test_a_force_at_a_coupling_moves_both_masses() -> None:

@@ -9,20 +9,16 @@ import numpy as np
 import pytest
 import torch
 
-import greybox_torch as gt
-from greybox_torch.estimate.problem import make_problem
-from greybox_torch.estimate.shifted_states import shifted_state
-from greybox_torch.estimate.surroundings import survey
 from greybox_torch.mechanisms.attachment import Attachment
+from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission import Backlash
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, Signals, State
 from greybox_torch.simulation.eager import EagerStepper
 from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import whole_records
-from tests.mechanisms.attaching import STEP, attached, records_of, starts, values_of
+from tests.mechanisms.attaching import attached, coupling_along_a_free_run, records_of, starts
 
 
 class Elbow(GreyBoxModel):
@@ -61,17 +57,9 @@ ELBOW = Elbow()
 
 
 @pytest.fixture(scope="module")
-def gear() -> Any:
+def gear() -> tuple[Surroundings, str]:
     """The gear's surroundings and the states by which its deflection can be changed, along a free run."""
-    records = records_of(400)
-    run = EagerStepper.of(ELBOW, (), "cpu", "double").run(
-        records, Pass(whole_records(records), values_of(ELBOW), np.zeros((1, 4)))
-    )
-    columns = {"torque": records.u[0], **dict(zip(("motor", "link"), run.y[0].T, strict=True))}
-    dataset = gt.DataSet([gt.Recording.from_arrays("swing", columns, sample_time=STEP, role="estimation")])
-    problem = make_problem(dataset, ELBOW, dataset.estimation())
-    (coupling,) = (q for q in ELBOW.ports if q.name == "gear")
-    return survey(ELBOW, problem, Simulator.of(ELBOW))["gear"], shifted_state(ELBOW, problem, coupling)
+    return coupling_along_a_free_run(ELBOW, "gear")
 
 
 def test_the_motor_and_the_twist_move_together(gear) -> None:
