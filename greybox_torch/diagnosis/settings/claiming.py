@@ -185,6 +185,13 @@ class ConfirmationSettings:
         chosen_by="bristles that also damp and slide by speed: what one law of friction lacks of them is 0.02 to 0.06",
     )
 
+    least_times_what_is_left: float = ratio(
+        3.0,
+        "How many times what free runs leave, far above the noise, an effect that is little beside a larger one accounts for.",
+        unit="times the share of the mismatch that is left",
+        chosen_by="four blind proofs and twelve sets: right second effects 17 and more, what the first one lacks 0.25 to 1.2",
+    )
+
 
 @dataclass(frozen=True, kw_only=True)
 class ResidualSettings:

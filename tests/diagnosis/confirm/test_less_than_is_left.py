@@ -42,3 +42,26 @@ def test_else_it_stands(monkeypatch, share, times, points) -> None:
 def test_only_free_runs_and_effects_are_asked(monkeypatch) -> None:
     assert asked(monkeypatch, 0.53, 3.1, 0.6, windows=True) == set()
     assert asked(monkeypatch, 0.53, 3.1, 0.6, effects=False) == set()
+
+
+@pytest.mark.parametrize(
+    ("size", "share", "times", "small"),
+    [
+        (0.033, 0.028, 23.5, True),
+        (0.066, 0.054, 5.7, True),
+        (0.034, 0.002, 7.3, False),
+        (0.033, 0.028, 2.5, False),
+        (0.12, 0.1, 23.5, False),
+    ],
+    ids=["a mount's hysteresis", "a roller's mode", "little is left", "hardly more than noise", "not little"],
+)
+def test_little_beside_a_larger_one_is_more_than_what_is_left(monkeypatch, size, share, times, small) -> None:
+    """Seen: a rubber mount's hysteresis (0.85) beside a centrifuge's drag, 3.3 %, where 2.8 % was left; the fit rose by 7.7 points."""
+    monkeypatch.setitem(SIZES, "nut.end_stop", size)
+    assert asked(monkeypatch, share, times, 7.7) == ({"nut.end_stop"} if small else set())
+
+
+def test_the_largest_effect_is_none_of_what_it_lacks_itself(monkeypatch) -> None:
+    monkeypatch.setitem(SIZES, "nut.end_stop", 0.05)
+    monkeypatch.setitem(SIZES, "strut.stiffness", 0.05)
+    assert asked(monkeypatch, 0.9, 20.0, 7.7) == set()
