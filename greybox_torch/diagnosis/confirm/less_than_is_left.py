@@ -19,10 +19,10 @@ def less_than_is_left(
 ) -> set[str]:
     """The effects that are refinements, as they account for less than what free runs of the validation experiments leave with all of them.
 
-    None where that is not far above the noise. Where the fit rises clearly with the effects, those alone that are little beside a larger
-    one, and account for a few times what is left at most. Seen: eleven small laws that a complete strut had and its model did not, told as
-    an end stop (0.97), 19 % of the mismatch, and three more; validation 97.7 to 98.3 %, 53 % left. A centrifuge's drag, 86 % of the
-    mismatch, and beside it a rubber mount's hysteresis (0.85), 3.3 %, where 2.8 % was left, 24 times the noise: more of the drag's law.
+    That holds far above the noise, where the fit hardly rises with all of them. Seen: eleven small laws that a complete strut had and its
+    model did not, told as an end stop (0.97), 19 % of the mismatch, and three more; validation 97.7 to 98.3 %, 53 % left. And what is
+    little beside a larger effect, more than noise left, has to account for some times as much. Seen: a centrifuge's drag, 86 % of the
+    mismatch, and a rubber mount's hysteresis (0.85), 3.3 %, where 2.8 % was left, 24 times the noise: more of the drag's law.
 
     Args:
         sizes: by effect, the share of the mismatch that it accounts for.
@@ -30,10 +30,13 @@ def less_than_is_left(
     if not state.effects or judged.by_windows_alone:
         return set()
     share, times, _ = judged.left(True)
-    if not times > settings.far_above_noise:
-        return set()
-    little = min(settings.least_times_what_is_left * share, settings.least_size_beside_larger)
-    most = max(sizes[prefix] for prefix in state.prefixes)
-    if points_gained(judged) >= settings.least_points_of_curve:
-        return {prefix for prefix in state.prefixes if sizes[prefix] < min(little, most)}
-    return {prefix for prefix in state.prefixes if sizes[prefix] < share or sizes[prefix] < min(little, most)}
+    parts = _little_beside_a_larger_one(sizes, share, settings) if times > settings.above_noise else set()
+    if times > settings.far_above_noise and points_gained(judged) < settings.least_points_of_curve:
+        parts |= {prefix for prefix in state.prefixes if sizes[prefix] < share}
+    return parts
+
+
+def _little_beside_a_larger_one(sizes: Mapping[str, float], share: float, settings: DiagnosisSettings) -> set[str]:
+    """The effects that may be what a larger one lacks, where free runs leave a ``share`` of the mismatch."""
+    least = min(settings.least_times_what_is_left * share, settings.least_size_beside_larger)
+    return {prefix for prefix, size in sizes.items() if size < min(least, max(sizes.values()))}

@@ -17,8 +17,9 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
 
 A_DISTURBANCE = (
-    "What is left above the noise follows neither past inputs nor, by any law, curve or response with memory, what the model knows of the "
-    "motion: it may be a disturbance that nobody measured. The same experiment twice would tell: what is missing repeats."
+    "What is left above the noise follows past inputs in small part at most, and no law, curve or response with memory of what the model "
+    "knows of the motion explains it: it may be a disturbance that nobody measured, or many laws of the model that are each a little too "
+    "simple. The same experiment twice would tell which: the latter repeats."
 )
 
 
@@ -50,8 +51,9 @@ def is_missing(
 ) -> bool:
     """Whether an error of so many times the noise, that nothing explains, says that something is missing.
 
-    A disturbance that nobody measured leaves some times the noise as well. It repeats in no input, and no law explains it. What is missing
-    from a model shows in past inputs, or is much larger, or was not looked for to the end, or where nobody looked.
+    A disturbance that nobody measured leaves some times the noise as well, and so do laws that are all a little richer than the model's.
+    Neither follows the inputs, by size and not only beyond chance, and no law explains it. What is missing from a model does, or is much
+    larger, or was not looked for to the end, or where nobody looked.
 
     Args:
         error: from :func:`error_without_a_name`.
@@ -60,6 +62,6 @@ def is_missing(
     """
     if error is None:
         return False
-    repeats = any(d.plain.past.beyond for d in detected)
+    repeats = any(d.plain.past.beyond and d.plain.past.value >= settings.least_of_error_repeats for d in detected)
     looked_at = tried and error < settings.most_error_elsewhere * chosen_by
     return not looked_at or repeats or error > settings.far_above_disturbances

@@ -186,10 +186,16 @@ class ConfirmationSettings:
     )
 
     least_times_what_is_left: float = ratio(
-        3.0,
-        "How many times what free runs leave, far above the noise, an effect that is little beside a larger one accounts for.",
+        2.0,
+        "How many times what free runs leave, if that is more than noise, an effect that is little beside a larger one accounts for.",
         unit="times the share of the mismatch that is left",
-        chosen_by="four blind proofs and twelve sets: right second effects 17 and more, what the first one lacks 0.25 to 1.2",
+        chosen_by="four blind proofs and twelve sets: right second effects 3.5 and more, what the first one lacks 0.25 to 1.2",
+    )
+    least_of_error_repeats: float = share(
+        0.7,
+        "Correlation of an error of some times the noise with one past input from which part of it repeats, and so something is missing.",
+        unit="largest correlation",
+        chosen_by="half of its variance; complete machines whose laws are all a little richer: 0.2",
     )
 
 

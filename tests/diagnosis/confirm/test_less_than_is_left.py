@@ -50,10 +50,20 @@ def test_only_free_runs_and_effects_are_asked(monkeypatch) -> None:
         (0.033, 0.028, 23.5, True),
         (0.066, 0.054, 5.7, True),
         (0.034, 0.002, 7.3, False),
-        (0.033, 0.028, 2.5, False),
+        (0.024, 0.037, 2.8, True),
+        (0.033, 0.028, 1.2, False),
+        (0.025, 0.007, 1.8, False),
         (0.12, 0.1, 23.5, False),
     ],
-    ids=["a mount's hysteresis", "a roller's mode", "little is left", "hardly more than noise", "not little"],
+    ids=[
+        "a mount's hysteresis",
+        "a roller's mode",
+        "little is left",
+        "a chassis' mode",
+        "noise",
+        "more than is left",
+        "not little",
+    ],
 )
 def test_little_beside_a_larger_one_is_more_than_what_is_left(monkeypatch, size, share, times, small) -> None:
     """Seen: a rubber mount's hysteresis (0.85) beside a centrifuge's drag, 3.3 %, where 2.8 % was left; the fit rose by 7.7 points."""

@@ -28,12 +28,21 @@ def detection(past: float) -> Detection:
     [
         (None, 1.0, 0.5, True, False),
         (5.3, 2.9, 0.02, True, False),
-        (5.3, 2.9, 0.3, True, True),
+        (5.3, 2.9, 0.8, True, True),
+        (5.3, 2.9, 0.3, True, False),
         (5.3, 2.9, 0.02, False, True),
         (5.3, 1.0, 0.02, True, True),
         (36.0, 30.0, 0.02, True, True),
     ],
-    ids=["at the noise", "a disturbance", "follows inputs", "stopped", "shown by others alone", "large"],
+    ids=[
+        "at the noise",
+        "a disturbance",
+        "follows inputs",
+        "laws a little richer",
+        "stopped",
+        "shown by others alone",
+        "large",
+    ],
 )
 def test_what_no_law_explains_is_missing_where_it_repeats_or_is_large(
     error, chosen_by, past, complete, missing
