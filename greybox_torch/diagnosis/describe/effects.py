@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -49,6 +49,15 @@ LEAST_MORE = 0.1
 """By how much an interval's share of what an effect explains exceeds that of the samples for it to say anything."""
 
 
+@dataclass(frozen=True)
+class _Account:
+    """What an effect accounts for: shares of the validation error and of the mismatch, and the gain on held-out experiments, if any."""
+
+    explained: float
+    size: float
+    gain: Gain | None
+
+
 def describe(
     study: Study,
     state: SearchState,
@@ -67,21 +76,11 @@ def describe(
         sizes: by effect, the share of the whole mismatch that it accounts for.
         removed: the share of the validation error beyond the noise that they remove together.
     """
-    hypothesis = state.current
-    assert isinstance(hypothesis.model, AugmentedModel)
     return tuple(
         _effect(
-            study,
-            state,
-            hypothesis.model,
-            e,
-            final,
-            removed * part,
-            gains.get(e.prefix),
-            left,
-            sizes.get(e.prefix, np.nan),
+            study, state, final, left, e, _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix))
         )
-        for e, part in zip(hypothesis.effects, _parts(state), strict=True)
+        for e, part in zip(state.effects, _parts(state), strict=True)
     )
 
 
@@ -95,22 +94,16 @@ def _parts(state: SearchState) -> list[float]:
 
 
 def _effect(
-    study: Study,
-    state: SearchState,
-    model: AugmentedModel,
-    attachment: Attachment,
-    final: Final,
-    explained: float,
-    gain: Gain | None,
-    left: LeftInFreeRuns,
-    size: float,
+    study: Study, state: SearchState, final: Final, left: LeftInFreeRuns, attachment: Attachment, account: _Account
 ) -> Effect:
+    model, gain = state.current.model, account.gain
+    assert isinstance(model, AugmentedModel)
     taken = state.step_beside_others(attachment.prefix)
     borne_out = part_borne_out(gain, study.settings)
     uncapped, alternatives = _probability(study, state, attachment, taken, borne_out)
     remaining, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
     ceiling = None if taken is None else ceiling_share(taken, state.memory_step)
-    limit = lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=size)
+    limit = lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=account.size)
     probability = uncapped if limit is None else min(uncapped, limit.highest)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
@@ -131,7 +124,7 @@ def _effect(
         signals=tuple(named(s) for s in mechanism.signals()),
         where=where(profiles, timelines, mechanism.acts_beyond({n: float(v["value"]) for n, v in parameters.items()})),
         parameters=parameters,
-        explained=round(explained, 4),
+        explained=round(account.explained, 4),
         alternatives=alternatives,
         curve=as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1]),
         memory=remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None,
@@ -149,7 +142,7 @@ def _effect(
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),
         limited=why_limited(uncapped, limit, gain, study.settings),
-        size=size,
+        size=account.size,
     )
 
 
