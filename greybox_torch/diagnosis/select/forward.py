@@ -25,6 +25,7 @@ from greybox_torch.diagnosis.select.names_for_curve import (
     many_names,
     within_reach,
 )
+from greybox_torch.diagnosis.select.only_parts import only_parts
 from greybox_torch.diagnosis.select.remaining import completes, little_things_are_missing
 from greybox_torch.diagnosis.select.richer import richer_instead, with_earlier_law_richer, with_richer_form
 from greybox_torch.diagnosis.select.state import SearchState
@@ -81,12 +82,13 @@ def take_effects(
 
 
 def _done(study: Study, state: SearchState) -> bool:
-    """Whether noise alone is left, or so little that no effect can be a finding and the model is as complete as can be seen."""
+    """Whether noise alone is left, or so little that no effect can be a finding and the model is as complete as can be seen, or whether all
+    that was found are parts of something larger."""
     settings = study.settings
     if negligible(study, state.plain):
         return True
     complete = little_is_left(study, state) and completes(state.current, settings)
-    return complete or only_noise(study.problem, state.current, settings)
+    return complete or only_parts(study, state) or only_noise(study.problem, state.current, settings)
 
 
 def _fine_curves_may_help(study: Study, state: SearchState, curves: bool) -> bool:

@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.select.explore import explore, nothing_is_left
 from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import forward_step, take_best
 from greybox_torch.diagnosis.select.memory import with_memory
+from greybox_torch.diagnosis.select.only_parts import only_parts
 from greybox_torch.diagnosis.select.posterior import separated
 from greybox_torch.diagnosis.select.rivals_beside import rivalled_beside_others
 from greybox_torch.diagnosis.select.same_effects import with_same_effects
@@ -39,6 +40,8 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
     state = yield from explore(study, state)
     state = yield from drop_superfluous(study, state)
     for _ in range(study.budget.most_revisions):
+        if only_parts(study, state):
+            return state
         before = state
         state = yield from revise(study, before)
         if state.current is before.current:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greybox_torch.diagnosis.settings.fields import SIGMA, number, ratio, share
+from greybox_torch.diagnosis.settings.fields import SIGMA, count, number, ratio, share
 
 HELD_OUT_SHARE = "share of the held-out squared error"
 
@@ -196,6 +196,13 @@ class ConfirmationSettings:
         "Correlation of an error of some times the noise with one past input from which part of it repeats, and so something is missing.",
         unit="largest correlation",
         chosen_by="half of its variance; complete machines whose laws are all a little richer: 0.2",
+    )
+
+    least_parts: int = count(
+        3,
+        "Effects found from which the search ends where each accounts for less of the mismatch than all of them leave, and the fit hardly "
+        "rises.",
+        chosen_by="of three effects that a machine has, the largest accounts for a third, and all of them leave nothing",
     )
 
 
