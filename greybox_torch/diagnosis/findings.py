@@ -67,7 +67,7 @@ class Findings(Selection):
         before, after = self.sums
         share = after / before if np.isfinite(before) and before > 0 else 0.0
         times = 0.0 if self.judged.by_windows_alone else self.judged.left(True)[1]
-        return LeftInFreeRuns(share, self.judged.missed, times)
+        return LeftInFreeRuns(share, self.judged.missed, times, self.state.by_free_runs)
 
     @property
     def removed(self) -> float:

@@ -47,7 +47,8 @@ def refitted_laws(study: Study, state: SearchState, others: HeldOut | None, judg
     def asked(step: SelectionStep, law: RankedCandidate) -> Standing | None:
         study.working_on(f"asking free runs about {' and '.join(e.prefix for e in law.fitted.effects)}")
         base = state.at(step.parent)
-        other = replace(base.at(law.fitted), steps=(*state.steps, replace(step, taken=law, led=None)), named=None)
+        steps = (*state.steps, replace(step, taken=law, led=None))
+        other = replace(base.at(law.fitted), steps=steps, named=None, by_free_runs=not state.has_curve)
         compared = partial(with_each_left_out, study, base)
         return leaving_far_less(study, other, others, judged, lambda by_it: judged.mismatch(True), compared)
 

@@ -15,12 +15,13 @@ class LeftInFreeRuns:
 
     ``of_mismatch``: share of the squared error of the model as it stands, None where no free run tells.
     ``of_measured``: mean squared error beyond the noise, in variances of what was measured. ``times_noise``: the largest error, in units
-    of the noise.
+    of the noise. ``chose``: whether these free runs chose the findings in the place of what windows preferred.
     """
 
     of_mismatch: float | None = None
     of_measured: float = 0.0
     times_noise: float = 0.0
+    chose: bool = False
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,7 @@ def lowest_limit(
         limited_by_what_is_left(share, left, settings, free_runs, free=free),
         limited_by_a_curve(ceiling, settings, free_runs),
         limited_by_a_larger_rest(size, free_runs, settings),
+        limited_by_its_choice(free_runs, settings),
     )
     return min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
 
@@ -123,6 +125,20 @@ def limited_by_a_larger_rest(size: float, left: LeftInFreeRuns, settings: Diagno
     return Limit(
         settings.highest_probability_where_most_is_left,
         f"it accounts for {100 * size:.2g} % of the mismatch, of which free runs leave {100 * left.of_mismatch:.2g} %",
+    )
+
+
+def limited_by_its_choice(free_runs: LeftInFreeRuns, settings: DiagnosisSettings) -> Limit | None:
+    """What limits findings that free runs chose in the place of what windows preferred; None for others.
+
+    Two ways to judge disagree, and no recording is left to decide. Seen: a ship's righting arm, told as an end stop of the hull (0.97) a
+    fortieth as stiff as the righting arm itself, where windows preferred its stiffness with a friction that changes over time.
+    """
+    if not free_runs.chose:
+        return None
+    return Limit(
+        settings.highest_probability_by_free_runs,
+        "free runs of the validation experiments chose it in the place of what windows preferred, and no recording is left to bear it out",
     )
 
 

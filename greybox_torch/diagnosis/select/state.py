@@ -33,7 +33,8 @@ class SearchState:
     were found in the place of a free curve that goes farther. ``memory``: the model with a residual with memory alone, where that
     was tried in the place of all that was found, or what was left of it. ``found_before``: what a search with fewer experiments came to.
     ``made_up_for``: effects that others made up for, each with the hypothesis that it was last in. ``in_place_of``: the step that took the
-    free curve in whose place the names stand. ``screens``: makes the screens.
+    free curve in whose place the names stand. ``by_free_runs``: whether free runs of held-out experiments chose the effects in the place of
+    others, or of nothing, that windows preferred. ``screens``: makes the screens.
     """
 
     plain: Hypothesis
@@ -45,6 +46,7 @@ class SearchState:
     found_before: Hypothesis | None = None
     made_up_for: tuple[tuple[Attachment, Hypothesis], ...] = ()
     in_place_of: SelectionStep | None = None
+    by_free_runs: bool = False
     screens: Screens = field(default_factory=Screens)
 
     @property

@@ -54,6 +54,13 @@ class ProbabilitySettings:
         unit="variances of what was measured",
         chosen_by="a fit of 60 %: of 1060 names that were right as often as claimed, 1059 stood at fits of 70 % and more",
     )
+    highest_probability_by_free_runs: float = share(
+        0.5,
+        "The most that is claimed for laws that free runs of the validation experiments chose in the place of what windows preferred: no "
+        "recording is left that had no part in it.",
+        unit="probability",
+        chosen_by="even odds; of three such names two were a part of the right one, and one was wrong",
+    )
     highest_probability_beside_a_curve: float = share(
         0.5,
         "The most that is claimed for a name where a free curve in its place goes clearly farther and free runs leave much.",

@@ -96,6 +96,7 @@ def test_laws_that_windows_passed_over_stand_in_the_place_of_a_curve(swing) -> N
     assert [e.prefix for e in state.effects] == ["coulomb", "drag"], (
         "as near as with what warms up, by fewer parameters"
     )
+    assert not state.by_free_runs, "the curve draws it as well"
     assert by_it.mismatch(True) == 0.0081 and gains == {"coulomb": SURE, "drag": SURE}
     step = state.step_of("drag")
     assert step is not None and step.taken is asked[1].steps[1].ranked[1] and state.compared_without
@@ -109,7 +110,7 @@ def test_one_law_is_told_where_two_do_not_leave_far_less(swing) -> None:
 def test_where_nothing_lasted_one_law_is_told_first(swing) -> None:
     """Seen: the same pendulum with its dry friction in the model: drag, of which one record was not sure, leaves 7 % in free runs."""
     found = refitted_laws(*swing(LEFT, told=()))
-    assert found is not None and [e.prefix for e in found[0].effects] == ["stribeck"]
+    assert found is not None and [e.prefix for e in found[0].effects] == ["stribeck"] and found[0].by_free_runs
     assert refitted_laws(*swing(LEFT, told=(), times=8.0)) is None, "disturbances may make as much"
 
 
