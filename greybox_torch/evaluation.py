@@ -17,7 +17,9 @@ from greybox_torch.estimate.overflow import NO_NUMBER, Overflow, avoidance, over
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.name_lists import listed
 from greybox_torch.rates import rates_at
 from greybox_torch.restored import load_beside
 from greybox_torch.simulation.simulator import SimulationOptions
@@ -27,7 +29,7 @@ MOST_NAMED = 5
 """Experiments that a message on an overflow names."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Evaluation:
     """Free runs of a model on all experiments of ``data``, start states estimated on the first tenth of each.
 
@@ -43,6 +45,15 @@ class Evaluation:
     substeps: int = 1
     overflow: str | None = None
     lost: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        title, effects = self.problem.model.title, self.problem.model.effects_told()
+        lines = [f"{self.data.name}: {f'{title} with {listed(effects)}' if effects else title}"]
+        for row in self.scores:
+            error = in_unit(f"{row['rmse']:.5g}", row["unit"])
+            place = f"{row['experiment']} ({row['role']}), {row['output']}"
+            lines.append(f"  {place}: fit {row['fit']:.5g} %, root mean square error {error}")
+        return "\n".join([*lines, *([] if self.overflow is None else [f"warning: {self.overflow}."])])
 
     @property
     def values(self) -> dict[str, float]:

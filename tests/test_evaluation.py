@@ -48,6 +48,19 @@ def test_true_values_leave_the_noise(motor_folder: Make) -> None:
         assert list(residuals.inputs) == ["voltage"]
 
 
+def test_it_prints_its_summary(motor_folder: Make) -> None:
+    """Seen: all arrays of the problem."""
+    folder = motor_folder()
+    title, *rows = str(evaluate(load_dataset(folder / "dataset.toml"), saved(folder))).splitlines()
+    assert title.endswith(": Motor")
+    assert [row.split(":")[0].strip() for row in rows] == [
+        "Steps (estimation), speed",
+        "More steps (estimation), speed",
+        "Sweep (validation), speed",
+    ]
+    assert all(" %, root mean square error 0.0" in row and row.endswith(" rad/s") for row in rows)
+
+
 def test_start_values_miss_something_that_the_input_explains(motor_folder: Make) -> None:
     found = evaluate(load_dataset(motor_folder() / "dataset.toml"))
     assert found.values == {"J": 0.03, "k": 0.1, "b": 0.08}

@@ -21,6 +21,7 @@ from greybox_torch.model.once_per_model import once_per_model
 from greybox_torch.systems import BUILT_IN, load_model
 
 Settings = TypeVar("Settings")
+Told = TypeVar("Told")
 
 
 def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
@@ -147,6 +148,13 @@ def check_names(argument: str, names: Iterable[str]) -> tuple[str, ...]:
     if isinstance(names, str):
         raise ArgumentError(argument, names, f'expected a list of names, such as ["{names}"]')
     return tuple(dict.fromkeys(names))
+
+
+def check_told(argument: str, value: Told, what: str = "a text") -> Told:
+    """A function that is told of progress. Raises ArgumentError where ``value`` is none; ``what`` it is called with."""
+    if not callable(value):
+        raise ArgumentError(argument, value, f"expected a function that is called with {what}; leave it out for none")
+    return value
 
 
 def check_kind(argument: str, value: Settings, kind: type[Settings]) -> Settings:

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from greybox_torch.api.arguments import check_seconds, check_seed
+from greybox_torch.api.arguments import check_seconds, check_seed, check_told
 from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
@@ -76,6 +76,7 @@ def design(
     Examples:
         ``design(found, seconds=10, limits={"voltage": {"lower": -6, "upper": 6}}).save("next")``
     """
+    check_told("progress", progress)
     held = _hypotheses(found, model)
     given = dict(held.data.limits if limits is None else limits)
     if seconds is not None:

@@ -15,6 +15,7 @@ from greybox_torch.api.arguments import (
     check_moving,
     check_seconds,
     check_seed,
+    check_told,
 )
 from greybox_torch.api.asked_of_channels import asked_where_poor, poor
 from greybox_torch.api.data_argument import check_data
@@ -88,6 +89,8 @@ def diagnose(
     """
     given, device = check_model(model), check_device(device)
     limit = None if time_limit is None else check_seconds("time_limit", time_limit)
+    check_told("progress", progress)
+    check_told("on_progress", on_progress, "a Progress")
     check_estimation(check_data(data))
     if device == "cpu":
         check_compiler("a diagnosis")

@@ -14,6 +14,7 @@ from greybox_torch.api.arguments import (
     check_names,
     check_precision,
     check_seed,
+    check_told,
     check_whole,
 )
 from greybox_torch.api.asked_of_channels import asked_where_poor
@@ -74,6 +75,7 @@ def fit(
     began = time.perf_counter()
     given, device, precision = check_model(model), check_device(device), check_precision(precision)
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
+    check_told("progress", progress)
     check_estimation(check_data(data))
     problem = make_problem(data, given, data.estimation())
     check_moving(data, given)

@@ -14,6 +14,7 @@ from greybox_torch.api.arguments import (
     check_moving,
     check_precision,
     check_seed,
+    check_told,
     check_whole,
 )
 from greybox_torch.api.data_argument import check_data
@@ -92,6 +93,7 @@ def fit_many(
     given, device, precision = check_model(model), check_device(device), check_precision(precision)
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
     check_seed(seed)
+    check_told("progress", progress)
     if isinstance(data, DataSet):
         raise ArgumentError("data", Kind.of(data), "expected a list of data sets, one for each machine")
     sets = [check_data(each) for each in data]

@@ -9,7 +9,7 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.api.arguments import check_device, check_seconds, check_seed, check_whole
+from greybox_torch.api.arguments import check_device, check_seconds, check_seed, check_told, check_whole
 from greybox_torch.api.fleet_machine import diagnose_machine
 from greybox_torch.api.fleet_result import FleetResult
 from greybox_torch.cores import allowed_cores
@@ -76,6 +76,7 @@ def fleet(
         ``gt.fleet("machines", "results/fleet", time_limit=60).rows``
     """
     began = time.perf_counter()
+    check_told("progress", progress, "a Progress")
     cluster.check_installed()
     folder = absolute(Path(fspath(out)))
     cards = find_cards([where] if isinstance(where, str | PathLike) else list(where), beside=folder)

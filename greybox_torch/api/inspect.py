@@ -112,7 +112,9 @@ class InspectionResult(Result):
                 "sample_time": recording.sample_time,
                 "min": float(np.nanmin(values)),
                 "max": float(np.nanmax(values)),
-                "std": float(np.nanstd(values)),
+                "std": float(np.nanstd(values))
+                if np.nanmin(values) < np.nanmax(values)
+                else 0.0,  # its mean is rounded
                 "missing": int(np.isnan(values).sum()),
                 "unit": self.data.channels[name].unit,
             }

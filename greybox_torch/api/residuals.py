@@ -122,7 +122,12 @@ class ResidualResult(Result):
             heading for name in self.tests[0].inputs for heading in (f"correlation\nwith {name}", "99 %\nbound")
         ]
         white = ["yes" if test.whiteness.within_chance else "no" for test in self.tests]
-        return [*columns, "white"], [[*row.values(), w] for row, w in zip(self.scores, white, strict=True)]
+        rows = []
+        for test, row, is_white in zip(self.tests, self.scores, white, strict=True):
+            still = [name for name, found in test.inputs.items() if not found.defined]
+            none = {f"{what} with {name}": "-" for name in still for what in ("correlation", "bound")}
+            rows.append([*(row | none).values(), is_white])
+        return [*columns, "white"], rows
 
 
 @names_checked

@@ -16,6 +16,7 @@ from greybox_torch.api.arguments import (
     check_model,
     check_moving,
     check_names,
+    check_told,
     check_whole,
 )
 from greybox_torch.api.data_argument import check_data
@@ -79,6 +80,7 @@ def train(
         ``gt.train(Motor(), data, net="residual", port="actuator").explanation.sentence``
     """
     given, device = check_model(model), check_device(device)
+    check_told("progress", progress, "a Report")
     check_estimation(check_data(data))
     check_kind("settings", settings, TrainingSettings)
     count = check_whole("ensemble", ensemble, 1, MOST_MEMBERS)

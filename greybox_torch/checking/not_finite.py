@@ -21,7 +21,10 @@ from greybox_torch.checking.source import Source
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.sensed_states import sensed_states
 
-_WRITE = "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero"
+_WRITE = (
+    "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero, "
+    "a matrix that can be inverted"
+)
 
 
 def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source: Source) -> Iterator[Finding]:
@@ -107,13 +110,11 @@ def not_finite_at_start(
     name, start, _, line = next((one for one in found if one[2]), ("", None, False, None))
     if start is None:
         return
-    declared = (*model.states, *model.inputs, *model.declared_parameters)
-    zero = [
-        s.name for s, v in zip(declared, torch.cat([start.x, start.u, start.p])[:, 0].tolist(), strict=True) if v == 0
-    ]
-    text = _text(source, line)
+    zero, text = _zero(model, start), _text(source, line)
     standing = [name for name in zero if re.search(rf"\b{re.escape(name)}\b", text)]
     divisors = [name for name in standing if re.search(rf"/\s*\(?\s*\w+\.{re.escape(name)}\b", text)]
+    if not standing:  # the line divides by what other lines made of them
+        standing = [name for name, other in zero.items() if not _origin(model, other, source.file)[0]]
     of = f' of "{name}"' if name else " (states at their start values, measured ones and inputs at zero)"
     yield _finding(
         f"the equations are no numbers at the start{of}"
@@ -121,6 +122,19 @@ def not_finite_at_start(
         source,
         line,
     )
+
+
+def _zero(model: GreyBoxModel, start: Points) -> dict[str, Points]:
+    """What is zero at a point, by name, with the point at which it is one in the place of zero."""
+    declared = {"x": model.states, "u": model.inputs, "p": model.declared_parameters}
+    places = [(kind, row, s.name) for kind, of in declared.items() for row, s in enumerate(of)]
+    found = {}
+    for kind, row, name in places:
+        values = getattr(start, kind).detach().clone()
+        if values[row, 0] == 0:
+            values[row] = 1.0
+            found[name] = replace(start, **{kind: values})
+    return found
 
 
 def _finding(found: str, source: Source, line: int | None) -> Finding:

@@ -57,7 +57,7 @@ def source_of(made: type[GreyBoxModel]) -> Source:
 
 
 def _method(made: type[GreyBoxModel], name: str) -> Method | None:
-    function = getattr(made, name)
+    function = inspect.unwrap(getattr(made, name))
     if function is getattr(GreyBoxModel, name):
         return None
     try:

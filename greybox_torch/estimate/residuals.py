@@ -37,6 +37,11 @@ class Correlation:
     bound: float
 
     @property
+    def defined(self) -> bool:
+        """Whether both signals move: the correlation with one that does not is none, and given as zeros."""
+        return bool(self.values.any())
+
+    @property
     def largest(self) -> float:
         """The largest absolute value over the lags that are tested: positive ones, and zero for the correlation with an input."""
         return float(np.abs(self._tested).max())
@@ -141,7 +146,8 @@ def _new(signal: np.ndarray) -> np.ndarray:
 
 def _mean(signal: np.ndarray) -> float:
     known = signal[~np.isnan(signal)]
-    return float(known.mean()) if known.size else 0.0
+    # within what is there, as the sum over a constant rounds: what is left of it would be correlated with
+    return float(np.clip(known.mean(), known.min(), known.max())) if known.size else 0.0
 
 
 def _covariance(later: np.ndarray, earlier: np.ndarray) -> np.ndarray:

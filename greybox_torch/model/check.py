@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import traceback
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -174,5 +175,5 @@ def _frame(model: GreyBoxModel, error: BaseException) -> traceback.FrameSummary 
 
 def _files(model: GreyBoxModel) -> set[str]:
     """The files of the model's equations."""
-    methods = (getattr(type(model), name) for name in ("derivative", "output"))
+    methods = (inspect.unwrap(getattr(type(model), name)) for name in ("derivative", "output"))
     return {code.co_filename for method in methods if (code := getattr(method, "__code__", None))}

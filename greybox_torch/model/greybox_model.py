@@ -15,6 +15,7 @@ from greybox_torch.model.force_outputs import output_asks_for_forces
 from greybox_torch.model.ports import Port, actuators, sensors
 from greybox_torch.model.shown_rates import shown_rates, with_shown_rates
 from greybox_torch.model.signals import Signals
+from greybox_torch.model.singular import nan_where_singular
 from greybox_torch.model.stacked import spread, stacked
 from greybox_torch.model.summary import summary
 from greybox_torch.model.unseen_states import unseen_states
@@ -50,6 +51,8 @@ class GreyBoxModel(torch.nn.Module):
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
+        for name in {"derivative", "output"} & cls.__dict__.keys():
+            setattr(cls, name, nan_where_singular(cls.__dict__[name]))
         cls.asks_for_forces = output_asks_for_forces(cls)
         declared = cls.__dict__.get("parameters")
         if isinstance(declared, list | tuple):

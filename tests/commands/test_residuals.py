@@ -9,8 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch import inspect, residuals
 from greybox_torch.api.residuals import read
 from greybox_torch.estimate.residuals import Correlation
+from tests.api.motor import Motor
 from tests.commands.free_running import PNG, Edit, Make, greybox, of, saved
 
 
@@ -63,6 +65,17 @@ def test_residuals_of_a_model_without_inputs(motor_folder: Make, edit: Edit) -> 
     edit(folder / "my_motor.py", "p.k * u.voltage - p.b", "-p.b")
     edit(folder / "dataset.toml", 'voltage = { column = "v", unit = "V" }\n', "")
     assert [row["input_correlation"] for row in of("residuals", folder)["residuals"]] == [None] * 3
+
+
+def test_an_input_that_does_not_move_has_no_correlation(data_set) -> None:
+    """Seen: 0.43 (bound 0.79) with a rope whose length is the same throughout a recording."""
+    time = 0.01 * np.arange(200)
+    recorded = {"voltage": np.full(200, 0.9), "speed": np.sin(7.0 * time)}
+    found = residuals(Motor(), data_set({"voltage": "V", "speed": "rad/s"}, [recorded]))
+    (row,) = [line.split() for line in str(found).splitlines() if " estimation " in line]
+    assert row[-3:] == ["-", "-", "no"]
+    told = inspect(found.run.data).to_dict()["experiments"][0]["channels"]["voltage"]
+    assert (told["min"], told["std"]) == (0.9, 0.0)
 
 
 @pytest.mark.parametrize(

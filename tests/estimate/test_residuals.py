@@ -89,6 +89,10 @@ def test_nothing_to_correlate() -> None:
     assert whiteness(np.zeros(50)).largest == 0.0
     assert input_correlation(np.random.default_rng(0).standard_normal(50), np.full(50, 3.0)).largest == 0.0
     assert input_correlation(np.zeros(50), np.arange(50.0)).largest == 0.0
+    # seen: 0.43 with a rope of 0.9 m, as the mean of 2000 times 0.9 is not 0.9
+    rope = input_correlation(np.random.default_rng(0).standard_normal(2000), np.full(2000, 0.9))
+    assert (rope.defined, rope.largest) == (False, 0.0)
+    assert input_correlation(np.random.default_rng(0).standard_normal(50), np.arange(50.0)).defined
     assert whiteness(np.arange(12.0)).tested == 11
 
 

@@ -28,6 +28,9 @@ from greybox_torch.model.ports import Actuator, Sensor
 SMALL = 1e-4
 """Size of what a law is made to add to the rates while its slope is taken, in sizes of the rates themselves."""
 
+FIRST_STEPS = (1.0, 1e-2, 1e-4, 1e-6)
+"""Steps of a law's parameter, in its unit, of which the first that leads to numbers tells how large its slope is."""
+
 
 @dataclass(frozen=True)
 class Regression:
@@ -127,16 +130,29 @@ def _columns(
 
 
 def _slope(equations: MotionEquations, at: Signals, name: str, moving: float) -> np.ndarray:
-    """What a unit of one parameter adds to the rates, (R, N), from a step that adds little to how they are ``moving``."""
-    here, step = equations.rates(at), 1.0
-    for _ in range(2):
-        there = equations.rates(at.replaced(**{name: at[name] + step}))
-        slope = (there - here) / step
-        size = float(np.sqrt(np.mean(slope**2)))
-        if not 0.0 < size < np.inf:
+    """What a unit of one parameter adds to the rates, (R, N), from a step that adds little to how they are ``moving``.
+
+    A unit may lead to where the equations give no numbers, such as a dead zone of 1 m in a length of 0.9 m that divides: then from the
+    largest step that does not, and none where even the smallest does.
+    """
+    here = equations.rates(at)
+    for first in FIRST_STEPS:
+        slope = _difference(equations, at, name, here, first)
+        if slope is not None:
             break
-        step = SMALL * moving / size
-    return slope
+    else:
+        return np.zeros_like(here)
+    size = float(np.sqrt(np.mean(slope**2)))
+    if not 0.0 < size < np.inf:
+        return slope
+    refined = _difference(equations, at, name, here, SMALL * moving / size)
+    return slope if refined is None else refined
+
+
+def _difference(equations: MotionEquations, at: Signals, name: str, here: np.ndarray, step: float) -> np.ndarray | None:
+    """What a ``step`` of one parameter adds to the rates, for a unit of it; None where that is no number."""
+    added = equations.rates(at.replaced(**{name: at[name] + step})) - here
+    return added / step if np.isfinite(added).all() else None
 
 
 def _averaged(views: Views, columns: np.ndarray) -> dict[bool, np.ndarray]:

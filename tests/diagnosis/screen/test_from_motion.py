@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 
 from greybox_torch.data import ParameterEntry
 from greybox_torch.diagnosis.screen.from_motion import candidates_from_motion
@@ -78,6 +79,27 @@ def test_laws_with_a_memory_and_sensors_are_not_regressed(rubbing) -> None:
     offered = [attach(model, port, law) for port, law in places]
     found = regressions(views, (), offered, rubbing.surroundings)
     assert all({r.score.attachment.mechanism.name for r in row} == {"constant_bias"} for row in found)
+
+
+class WithinHalf(ConstantBias):
+    """A bias that is no number above 0.5 in its unit, as a dead zone is that leaves nothing of an input that divides."""
+
+    name = "within_half"
+
+    def force(self, s, p, z):
+        return p.bias / torch.sqrt(0.5 - p.bias)
+
+
+@pytest.mark.filterwarnings("error")
+def test_a_law_is_regressed_by_a_step_that_leads_to_numbers(rubbing) -> None:
+    """Seen: a step of 1 m of the dead zone of a rope of 0.9 m; nan, and NumPy's warnings, in the regression."""
+    views = views_of(rubbing.problem)
+    assert isinstance(views, Views)
+    model, laws = rubbing.problem.model, (ConstantBias(), WithinHalf())
+    found = regressions(views, (), [attach(model, "sled", law) for law in laws], rubbing.surroundings)
+    for plain, within in (row for row in found):
+        assert within.score.explained == pytest.approx(plain.score.explained, rel=1e-6)
+        np.testing.assert_allclose(within.score.size, np.sqrt(0.5) * plain.score.size, rtol=1e-2)
 
 
 def test_a_hypothesis_with_a_memory_is_not_compared_with_the_motion(rubbing) -> None:
