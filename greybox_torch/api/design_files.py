@@ -59,7 +59,9 @@ def card_text(data: DataSet, time: np.ndarray, reference: str, folder: Path, rem
     lines = [f"sample_time = {float(f'{step:.9g}')!r}"] if card is None else _clock(card, step)
     lines += [f'hold = "{data.hold}"', "", "[channels]"]
     for name, channel in data.channels.items():
-        own = {"column": name, "unit": channel.unit} if card is None else _given(card.channels[name])
+        own = (
+            {"column": name, "unit": channel.unit} if card is None else _of_a_column(name, _given(card.channels[name]))
+        )
         lines.append(f"{toml_key(name)} = {_table(own)}")
     told = "\n".join(lines)
     return (
@@ -85,6 +87,11 @@ def _given(entry: Entry) -> dict[str, Any]:
     given = {key: getattr(entry, key) for key in type(entry).model_fields if key in entry.model_fields_set}
     column = given.get("column") or ""
     return given | ({"column": int(column[1:])} if re.fullmatch(r"#\d+", column) else {})
+
+
+def _of_a_column(name: str, given: dict[str, Any]) -> dict[str, Any]:
+    """With a column of the channel's name, where the old recordings have a constant, or columns of their own."""
+    return given if "column" in given or "expr" in given else {"column": name, **given}
 
 
 def _table(given: Mapping[str, Any]) -> str:

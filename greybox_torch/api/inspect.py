@@ -14,6 +14,7 @@ from rich.text import Text
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
+from greybox_torch.checking.constant_channels import rests
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
 from greybox_torch.keywords import names_checked
@@ -112,9 +113,7 @@ class InspectionResult(Result):
                 "sample_time": recording.sample_time,
                 "min": float(np.nanmin(values)),
                 "max": float(np.nanmax(values)),
-                "std": float(np.nanstd(values))
-                if np.nanmin(values) < np.nanmax(values)
-                else 0.0,  # its mean is rounded
+                "std": 0.0 if rests(recording, name) else float(np.nanstd(values)),
                 "missing": int(np.isnan(values).sum()),
                 "unit": self.data.channels[name].unit,
             }

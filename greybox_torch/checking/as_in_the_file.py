@@ -50,10 +50,10 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", HELD_OUT)}.get(recording.name)
     if said is None or card.decimate or card.resample or card.channels[name].derivative:
         return None
-    formula = card.channels[name].expression(said.columns.get(name))
-    columns = formula.columns
-    if len(columns) != 1:
+    formula = card.formulas(said).get(name)
+    if formula is None or len(formula.columns) != 1:
         return None
+    columns = formula.columns
     clock = said.columns.get(TIME, card.time.column) if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
     files = [data.path.parent / file for file in said.file]

@@ -38,7 +38,7 @@ def constant_channels(data: DataSet, model: GreyBoxModel | None) -> Iterator[Con
     """Outputs that do not move in an experiment, and inputs that do not move in any that is estimated from.
 
     An input may well rest in one experiment, for a free decay or an even load. Where no model says which channels are inputs, those are
-    told that move nowhere.
+    told that move nowhere. What the card calls a constant is meant to be one: it is told of outputs alone.
     """
     inputs = None if model is None else {one.name for one in model.inputs}
     for name, channel in data.channels.items():
@@ -52,6 +52,8 @@ def constant_channels(data: DataSet, model: GreyBoxModel | None) -> Iterator[Con
             values = _values(resting, name)
             if len(resting) < len(estimated) or len(values) > 1:
                 continue
+        if (inputs is None or name in inputs) and all(name in recording.constants for recording in resting):
+            continue
         shown = resting_at(resting, name, channel.unit)
         yield ConstantChannel(name, shown, tuple(recording.name for recording in resting), *_told(name, inputs))
 
@@ -65,7 +67,8 @@ def _told(name: str, inputs: set[str] | None) -> tuple[str, str]:
     if name in inputs:
         return (
             "an input that never moves cannot show what it does",
-            "an experiment in which it moves, where what it does is to be estimated or found; or another column",
+            "an experiment in which it moves, where what it does is to be estimated or found; or another column; or, if it is a constant, "
+            "no column and constants = { … } in every [[experiment]]",
         )
     return (
         "an output that never moves says nothing of what moves it",

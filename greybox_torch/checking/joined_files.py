@@ -91,10 +91,10 @@ def joined_files(data: DataSet) -> dict[str, JoinedFiles]:
 
 
 def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Recording, read: Read) -> JoinedFiles:
-    if data.path is None or card.time is None:
+    if data.path is None or card.time is None or set(card.channels) != set(recording.signals):
         raise KeyError(TIME)
     clock = entry.columns.get(TIME, card.time.column)
-    formulas = {name: card.channels[name].expression(entry.columns.get(name)) for name in recording.signals}
+    formulas = card.formulas(entry)
     columns = {name: formula.columns for name, formula in formulas.items()}
     needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])
     known = without_error_values(read, card.channels, formulas)

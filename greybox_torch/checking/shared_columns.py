@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import combinations
 
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import Card, read_card
-from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
+from greybox_torch.data.card_channels import ChannelEntry
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.expression import Expression
 from greybox_torch.in_unit import in_unit
 
 
@@ -36,8 +37,9 @@ def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
         return
     card, told = read_card(data.path), set[tuple[str, str]]()
     for experiment in card.experiment:
-        for one, other in combinations(card.channels, 2):
-            column = _shared(card, experiment, one, other)
+        formulas = card.formulas(experiment)
+        for one, other in combinations(formulas, 2):
+            column = _shared(card, formulas, one, other)
             if column and (one, other) not in told:
                 told.add((one, other))
                 own = {one, other} & set(experiment.columns)
@@ -47,13 +49,13 @@ def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
                 yield SharedColumn(names, column, experiment.name if own else "", write)
 
 
-def _shared(card: Card, experiment: ExperimentEntry, one: str, other: str) -> str:
+def _shared(card: Card, formulas: Mapping[str, Expression], one: str, other: str) -> str:
     """The column that two channels share in an experiment; else "". A derivative is another signal; a factor is meant."""
     entries = card.channels[one], card.channels[other]
-    texts = [e.expression(experiment.columns.get(name)).text for e, name in zip(entries, (one, other), strict=True)]
     scaled = any("scale" in entry.model_fields_set for entry in entries)
-    alike = texts[0] == texts[1] and entries[0].derivative == entries[1].derivative
-    return texts[0] if alike and not scaled else ""
+    text = formulas[one].text
+    alike = text == formulas[other].text and entries[0].derivative == entries[1].derivative
+    return text if alike and not scaled else ""
 
 
 def _where_a_scale_may_stand(one: ChannelEntry, other: ChannelEntry) -> str:

@@ -62,7 +62,7 @@ def _write(data: DataSet, name: str, period: float) -> str:
         factor = entry.scale if entry.file_unit is None else conversion(entry.file_unit, entry.unit, "")[0]
     except UserError:  # the card was replaced meanwhile
         return "the turns added up: expr = 'unwrap(column, period)'"
-    column = str(entry.column)
+    column = entry.column or "column"
     source = entry.expr or (column if column.isidentifier() else f'col("{column}")')
     call, turn = f"unwrap({source}, {_number(period / abs(factor))})", TURNS.get(entry.unit, 0.0)
     # Counts, or another unit, were taken for angles.

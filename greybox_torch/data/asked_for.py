@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
+from greybox_torch.data.card_constants import as_constant
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.readers.table import NoSuchColumn
 from greybox_torch.errors import UserError
@@ -14,7 +15,10 @@ from greybox_torch.files import toml_key
 
 def left_out(channel: str) -> str:
     """What can be done where one of several experiments lacks a channel."""
-    return f'leave the experiment out of the card, or give the channel a column there: columns = {{ {toml_key(channel)} = "…" }}'
+    return (
+        f'leave the experiment out of the card, or give the channel a column there: columns = {{ {toml_key(channel)} = "…" }}, '
+        f"or its value where it has one throughout: {as_constant(channel)}"
+    )
 
 
 @contextmanager

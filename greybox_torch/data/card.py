@@ -15,8 +15,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
 
 from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
+from greybox_torch.data.card_constants import check_constants
 from greybox_torch.data.card_controller import LoopEntry, check_loops
 from greybox_torch.data.card_errors import describe
+from greybox_torch.data.expression import Expression
 from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.reading import read_toml
@@ -162,9 +164,19 @@ class Card(Entry):
         return self
 
     @model_validator(mode="after")
+    def _channels_have_a_source(self) -> Self:
+        check_constants(self.channels, self.experiment)
+        return self
+
+    @model_validator(mode="after")
     def _loops_are_of_channels(self) -> Self:
         check_loops(self.controller, self.channels, self.hold)
         return self
+
+    def formulas(self, experiment: ExperimentEntry) -> dict[str, Expression]:
+        """By channel, how it comes from columns in an experiment: without those that are constants there."""
+        own = {name: entry for name, entry in self.channels.items() if name not in experiment.constants}
+        return {name: entry.expression(experiment.columns.get(name)) for name, entry in own.items()}
 
 
 def _what_else(path: Path) -> str:

@@ -49,8 +49,9 @@ def _column(value: Any) -> Any:
 class ChannelEntry(Entry):
     """Where a channel stands in the files: file value × scale = value in `unit`, or converted from `file_unit`.
 
-    `expr` computes it from several columns. `derivative` is the cut-off in Hz where the channel is the rate of change of what the file
-    holds. `missing` has the error values of the file, one or several, numbers or texts: its samples that are such a one are missing.
+    `expr` computes it from several columns. It has neither where every experiment gives its `constants`, or a column of its own.
+    `derivative` is the cut-off in Hz where the channel is the rate of change of what the file holds. `missing` has the error values of
+    the file, one or several, numbers or texts: its samples that are such a one are missing.
     """
 
     column: Text | None = None
@@ -94,8 +95,6 @@ class ChannelEntry(Entry):
 
     @model_validator(mode="after")
     def _one_source(self) -> Self:
-        if self.column is None and self.expr is None:
-            raise ValueError('"column" is missing; expected column = "…", or expr = "…" of several columns')
         if self.column is not None and self.expr is not None:
             raise ValueError('both "column" and "expr" are given; expected one of them')
         if self.file_unit is not None and "scale" in self.model_fields_set:
@@ -148,6 +147,8 @@ class ExperimentEntry(Entry):
 
     `join` says how several files belong together: "concatenate", one after the other, "time", columns matched by their time stamps, or
     "rows", samples of one number side by side; a column by its position is then counted over the columns of all files.
+    `constants` are channels that have one value throughout the experiment, in the channel's `unit`: they need no column, and where they
+    have one it is not read.
     """
 
     name: Text
@@ -156,6 +157,7 @@ class ExperimentEntry(Entry):
     role: Literal["estimation", "validation"] = "estimation"
     rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
     columns: dict[str, Text] = {}
+    constants: dict[str, Finite] = {}
 
     @field_validator("file", mode="before")
     @classmethod

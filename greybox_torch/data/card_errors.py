@@ -10,6 +10,7 @@ from typing import Any, TypeVar, get_args
 from pydantic import BaseModel, ValidationError
 
 from greybox_torch.errors import UserError, did_you_mean, quoted
+from greybox_torch.files import toml_key
 
 _Entry = TypeVar("_Entry", bound=BaseModel)
 
@@ -59,6 +60,8 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
     kind, location = details["type"], details["loc"]
     if kind == "extra_forbidden":
         allowed = _allowed_keys(card, location[:-1])
+        if _is_constant(details, content):
+            return f"{_at(location[:-1], content)}unknown key {quoted(location[-1])}; expected {_constant(location[1], details['input'])}"
         hint = did_you_mean(location[-1], allowed)
         return _at(location[:-1], content) + f'unknown key "{location[-1]}"{hint}; expected {", ".join(allowed)}'
     expected = _EXPECTED_AT.get(location[-1:]) or _EXPECTED.get(kind, "").format(**details.get("ctx", {}))
@@ -79,6 +82,8 @@ def _problem(details: Any, content: dict[str, Any], card: type[BaseModel]) -> st
 def _table_of(location: Sequence[str | int], found: Any) -> str:
     """A table for what stands alone, with the key that its value has there."""
     match location:
+        case ["channels", name] if isinstance(found, float):
+            return _constant(name, found)
         case ["channels", _] if isinstance(found, str | int):
             return f'{{ column = {quoted(found)}, unit = "…" }}'
         case ["model", "parameters" | "initial", _] if isinstance(found, int | float):
@@ -88,6 +93,18 @@ def _table_of(location: Sequence[str | int], found: Any) -> str:
         case ["model", "parameters", _]:
             return "{ value = 1.0 }"
     return "{ key = value }"
+
+
+def _is_constant(details: Any, content: dict[str, Any]) -> bool:
+    """Whether a channel without a column has a number, whatever its key: `rope = { value = 0.9 }`."""
+    match details["loc"]:
+        case ["channels", str(name), _] if type(details["input"]) in (int, float):
+            return not {"column", "expr"} & set(content["channels"][name])
+    return False
+
+
+def _constant(channel: str | int, value: float) -> str:
+    return f'{{ unit = "…" }} alone, and constants = {{ {toml_key(str(channel))} = {value:g} }} in every [[experiment]]'
 
 
 def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:

@@ -166,9 +166,11 @@ def _checked_recordings(recordings: Iterable[Recording]) -> tuple[Recording, ...
     first = held[0]
     for other in held[1:]:
         if set(other.signals) != set(first.signals):
+            differ = ", ".join(sorted(set(other.signals) ^ set(first.signals)))
             raise UserError(
                 f'DataSet, recordings: "{other.name}" has the channels {", ".join(other.signals)}; '
-                f'expected those of "{first.name}": {", ".join(first.signals)}'
+                f'expected those of "{first.name}": {", ".join(first.signals)} (they differ in {differ}; '
+                "a channel that has one value throughout may be a single number)"
             )
     return held
 

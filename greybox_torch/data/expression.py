@@ -80,7 +80,10 @@ def parse_expression(text: str) -> Expression:
     except (RecursionError, MemoryError, OverflowError):
         raise ValueError("an expression that is nested too deeply, or has a number too large") from None
     if not columns:
-        raise ValueError(f'"{text}" has no column; expected one at least')
+        raise ValueError(
+            f'"{text}" has no column; expected one at least; or, of a channel that has one value throughout, no expr and '
+            "constants = { NAME = … } in every [[experiment]]"
+        )
     return Expression(text, tree)
 
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.card import TIME
 from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
 from greybox_torch.data.readers.time_stamps import TimeStamps
+from greybox_torch.data.single_numbers import constant, is_number
 from greybox_torch.data.steps import usual_step
 from greybox_torch.errors import UserError, did_you_mean
 
@@ -26,6 +27,7 @@ class Samples:
     sample_time: float
     signals: dict[str, NDArray[np.float64]]
     units: dict[str, str]
+    constants: frozenset[str]
 
 
 def samples_of_arrays(
@@ -43,7 +45,14 @@ def samples_of_arrays(
         raise UserError(
             f"{place}, signals: found {_shown(signals)}, expected arrays by channel, like {{'voltage': u, 'speed': y}}"
         )
-    held = {_channel(place, channel): _signal(place, channel, values) for channel, values in signals.items()}
+    constants = {
+        _channel(place, name): constant(place, name, value) for name, value in signals.items() if is_number(value)
+    }
+    held = {
+        _channel(place, name): _signal(place, name, values) for name, values in signals.items() if name not in constants
+    }
+    if not held:
+        raise UserError(f"{place}, signals: found one number for every channel, expected an array of one at least")
     stamps = None if time is None else _seconds(time, f"{place}, time")
     length = _common_length(place, held | ({} if stamps is None else {TIME: stamps}))
     check_length(length, place)
@@ -53,7 +62,8 @@ def samples_of_arrays(
     else:
         check_time(stamps, lambda k: f"{place}, time, sample {k} (the first is 0)")
         step = usual_step(stamps)
-    return Samples(stamps, step, held, _units(place, units, held))
+    held = {name: np.full(length, constants[name]) if name in constants else held[name] for name in signals}
+    return Samples(stamps, step, held, _units(place, units, held), frozenset(constants))
 
 
 def samples_of_frame(
@@ -64,6 +74,7 @@ def samples_of_frame(
     sample_time: float | None,
     units: Mapping[str, str] | None,
     columns: Mapping[str, str] | None,
+    constants: Mapping[str, float] | None = None,
 ) -> Samples:
     """What `Recording.from_dataframe` describes."""
     place = _place(name)
@@ -78,9 +89,14 @@ def samples_of_frame(
             raise UserError(
                 f"{place}, {argument}: frame has no column {column!r}{did_you_mean(str(column), map(str, found))}; found {listed}"
             )
+    for channel, value in (constants or {}).items():
+        if channel in wanted:
+            raise UserError(f'{place}, constants: "{channel}" has a column as well; expected one of them')
+        if not is_number(value):
+            raise UserError(f'{place}, constants: found {_shown(value)} for "{channel}", expected a number')
     return samples_of_arrays(
         name,
-        {channel: _values(frame, column) for channel, column in wanted.items()},
+        {channel: _values(frame, column) for channel, column in wanted.items()} | dict(constants or {}),
         sample_time=sample_time,
         time=None if time is None else _values(frame, time),
         units=units,

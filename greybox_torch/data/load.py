@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.asked_for import asked_for
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
+from greybox_torch.data.card_constants import constants_of, told_constants
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.dataset import DataSet
@@ -69,7 +70,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     place = f'{path}, [[experiment]] "{experiment.name}"'
     files = [path.parent / file for file in experiment.file]
     clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
-    formulas = {name: entry.expression(experiment.columns.get(name)) for name, entry in card.channels.items()}
+    formulas = card.formulas(experiment)
     needed = [*(c for formula in formulas.values() for c in formula.columns), *([clock] if clock else [])]
     others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
     with asked_for(place, formulas, clock, others, read):
@@ -91,6 +92,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
 
     done = _processed(place, card, time, sample_time, signals, missing)
     check_length(len(done.time), place)
+    constants = constants_of(place, experiment, len(done.time))
     between = _between(source, formulas, (start, stop)) if np.array_equal(done.time, time) else {}
     slower = (
         f"of a slower file, and as outputs counted at its own samples alone: {', '.join(between)}" if between else ""
@@ -100,13 +102,14 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         role=experiment.role,
         time=done.time,
         sample_time=done.sample_time,
-        signals=done.signals,
+        signals={name: constants[name] if name in constants else done.signals[name] for name in card.channels},
         source=files[0],
         further=tuple(files[1:]),
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
-        notes=(*source.notes, *done.notes, *filter(None, [slower])),
+        notes=(*source.notes, *done.notes, *filter(None, [slower]), *told_constants(card.channels, experiment)),
         between=between,
+        constants=frozenset(constants),
     )
 
 
@@ -201,7 +204,8 @@ def _processed(
         done.time, done.sample_time = even_grid(time, card.resample, place), card.resample
         done.signals = {name: at_times(done.time, time, values) for name, values in signals.items()}
         done.notes.append(f"resampled to steps of {card.resample:g} s, on straight lines between samples")
-    rates = {name: entry.derivative for name, entry in card.channels.items() if entry.derivative is not None}
+    of_column = {name: entry for name, entry in card.channels.items() if name in signals}
+    rates = {name: entry.derivative for name, entry in of_column.items() if entry.derivative is not None}
     if (rates or card.decimate) and card.resample is None and jitter > EVEN:
         gap = longest_gap(time)
         found = (

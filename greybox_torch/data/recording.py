@@ -39,7 +39,8 @@ class Recording:
     `rows` is the half-open slice of the file `source` that the recording stands for; `source` is None where there is no file, and
     `further` are those that were joined to it. `units` are by channel, where they are known. `notes` say what was done to
     the file's samples, or what is remarkable about their time stamps. `between`, by channel, marks the samples (N,) that lie on straight
-    lines between those of a slower file: an output was not measured there.
+    lines between those of a slower file: an output was not measured there. `constants` are the channels of which it is known that they
+    have one value throughout, as the card or a single number in memory says.
 
     All arrays are read-only, and no change to what they were made from reaches them.
     """
@@ -55,6 +56,7 @@ class Recording:
     notes: tuple[str, ...] = ()
     further: tuple[Path, ...] = ()
     between: Mapping[str, NDArray[np.bool_]] = field(default_factory=dict)
+    constants: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
         own = {"time": _read_only(self.time), "signals": {n: _read_only(v) for n, v in self.signals.items()}}
@@ -83,7 +85,7 @@ class Recording:
         Args:
             name: what results call the experiment.
             signals: N samples of every input and output, by the model's name for it, in the channel's unit; NaN, None or masked where a
-                sample is missing.
+                sample is missing. A single number is a constant, the value throughout.
             sample_time: seconds between samples; the first is at 0 s. Or
             time: the N time stamps in seconds, increasing; or of NumPy's kinds datetime64 and timedelta64.
             role: "estimation" (parameters are estimated from it) or "validation" (results are judged on it).
@@ -100,7 +102,7 @@ class Recording:
         """
         made = samples_of_arrays(name, signals, sample_time=sample_time, time=time, units=units)
         check_role(role, f'recording "{name}", role')
-        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units)
+        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units, constants=made.constants)
 
     @classmethod
     def from_dataframe(
@@ -113,6 +115,7 @@ class Recording:
         role: Role = "estimation",
         units: Mapping[str, str] | None = None,
         columns: Mapping[str, str] | None = None,
+        constants: Mapping[str, float] | None = None,
     ) -> Recording:
         """A recording from a table in memory: a DataFrame of pandas or polars, a Table of pyarrow, a dictionary of arrays.
 
@@ -125,6 +128,7 @@ class Recording:
             units: by channel.
             columns: the column of every channel, by the model's name for the channel; by default every column but ``time`` is a channel
                 of the same name.
+            constants: channels without a column, which have one value throughout.
 
         Raises:
             UserError: ``frame`` has no such column, and as :meth:`from_arrays` does.
@@ -134,9 +138,11 @@ class Recording:
             >>> Recording.from_dataframe("steps", frame, time="t", columns={"voltage": "u", "speed": "y"})
             Recording('steps', estimation: 20 samples of voltage, speed, 0.01 s apart)
         """
-        made = samples_of_frame(name, frame, time=time, sample_time=sample_time, units=units, columns=columns)
+        made = samples_of_frame(
+            name, frame, time=time, sample_time=sample_time, units=units, columns=columns, constants=constants
+        )
         check_role(role, f'recording "{name}", role')
-        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units)
+        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units, constants=made.constants)
 
     def __len__(self) -> int:
         return len(self.time)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from greybox_torch.data.card_constants import as_constant
 from greybox_torch.data.column_units import unit_in, without_ending, without_unit
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, named_as_count
 from greybox_torch.data.understood_units import understood
@@ -115,7 +116,9 @@ def _draft(
     if column is None:
         free = [name for name in columns if name not in found.values()]
         left = f"; left over: {', '.join(name + _unknown(units.get(name, '')) for name in free)}" if free else ""
-        return Draft(channel.name, channel.unit, None, remark=f"no column fits{left}")
+        constant = f"; or, of a constant, no column and {as_constant(channel.name)} in every [[experiment]]"
+        told = f"no column fits{left}{constant if channel.is_input else ''}"
+        return Draft(channel.name, channel.unit, None, remark=told)
     unit = units.get(column, "") or _gravity(column, channel.unit)
     certain = any(words(name) == words(channel.name) for name in (column, without_ending(column)))
     doubt = "" if certain or column.lower() == channel.name.lower() else "please check: guessed from the name"

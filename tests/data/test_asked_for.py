@@ -13,6 +13,7 @@ from greybox_torch.errors import UserError
 
 Edit = Callable[[Path, str, str], None]
 OUT = 'leave the experiment out of the card, or give the channel a column there: columns = { speed = "…" }'
+OUT += ", or its value where it has one throughout: constants = { speed = … }"
 
 
 def told(card: Path) -> str:

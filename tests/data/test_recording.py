@@ -166,7 +166,7 @@ def with_entry(values: np.ndarray, index: int, value: float) -> np.ndarray:
             'channel "u", sample 3 (the first is 0): found inf, expected a finite',
         ),
         ({"signals": {"u": U.reshape(4, 5)}}, 'channel "u": has the shape (4, 5); expected (N,), one number a sample'),
-        ({"signals": {"u": 3.0}}, 'channel "u": has the shape (); expected (N,)'),
+        ({"signals": {"u": 3.0}}, "signals: found one number for every channel, expected an array of one at least"),
         ({"signals": {"u": U * 1j}}, 'channel "u": holds complex numbers; expected real numbers'),
         ({"signals": {"u": ["1"] * N}}, 'channel "u": holds text; expected real numbers'),
         ({"signals": {"u": [1.0, "2", None] * 5}}, "sample 1 (the first is 0): found '2', expected a number"),

@@ -85,7 +85,8 @@ def test_a_unit_at_the_end_of_a_name_is_no_part_of_the_name(folder: Path) -> Non
 def test_a_column_that_is_not_found_is_told_with_those_left_over(folder: Path) -> None:
     csv(folder / "a.csv", "t,speed,wind_degF", T, W, W)
     card = gt.card(folder / "a.csv", f"{folder / 'my_motor.py'}:Motor")
-    assert "[channels] voltage: no column fits; left over: wind_degF" in card.open
+    constant = "or, of a constant, no column and constants = { voltage = … } in every [[experiment]]"
+    assert f"[channels] voltage: no column fits; left over: wind_degF; {constant}" in card.open
 
 
 def test_units_of_the_file_are_converted(folder: Path) -> None:
