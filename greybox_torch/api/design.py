@@ -27,7 +27,7 @@ from greybox_torch.experiment_design.controller import Loop
 from greybox_torch.experiment_design.excitation import Excitation
 from greybox_torch.experiment_design.imitation import THOROUGH
 from greybox_torch.experiment_design.judged import judged_at_estimates
-from greybox_torch.experiment_design.limits import Limits, limits_of
+from greybox_torch.experiment_design.limits import Limits, held_as_in, limits_of
 from greybox_torch.experiment_design.search import MOST_SAMPLES, frequencies, sampled, search
 from greybox_torch.experiment_design.simulated import predictions, within
 from greybox_torch.keywords import names_checked
@@ -63,7 +63,8 @@ def design(
         found: the result of ``diagnose``, or the folder that it was saved in.
         precision: a free parameter of the recommended model; its standard deviation is made small instead.
         seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
-        limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded.
+        limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded; an input that was
+            constant in every recording is kept so.
         controller: as the card's table [controller]; by default that table. An empty one is none.
         model: how to load the plain model, where ``found`` is a folder and the card names none.
         seed: draws inputs, their phases and levels.
@@ -88,6 +89,8 @@ def design(
     progress("reading what the recordings say of each hypothesis")
     step = held.data.recordings[0].sample_time
     aim, begins = _begun(_aim(held, precision, loops_for(entries, plain, own, step)), own)
+    like = next(r for r in held.data.recordings if r.name == begins.like)
+    own = held_as_in(own, like)
     own = replace(own, begin=begun_at(aim.contenders[0], own, step))
     time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
     best = search(aim, own, time, check_seed(seed), progress)

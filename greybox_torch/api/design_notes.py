@@ -24,9 +24,9 @@ def design_notes(found: DesignResult) -> list[str]:
             f"Designed for the first {digits(found.seconds, 4)} of {digits(found.limits.seconds, 4)} s; "
             "repeated, it says more in proportion to the time."
         )
-    if len(found.inputs) > 1:
+    if len(found.limits.designed) > 1:
         lines.append(EVERY_INPUT)
-    if found.parameter is None and not found.expected.decides:
+    if found.parameter is None and not found.expected.worth_recording:
         return [
             *lines,
             f"{INPUT} holds the best that was found; it is not worth recording. Wider limits or more seconds may help.",
@@ -51,8 +51,15 @@ def recorded_as_limits(found: DesignResult) -> Iterator[str]:
     kinds = [f"for {listed(inputs)}"] if inputs else []
     kinds += [f"with {100 * WIDENED:.0f} % more either way for {listed(outputs)}"] if outputs else []
     if kinds:
-        few = "No limits are" if len(names) == len(ranges) else "Not all limits are"
+        few = "No limits are" if len(names) + len(limits.held) == len(ranges) else "Not all limits are"
         yield f"{few} given under [limits] on the card (in Python limits=): the recorded range was taken, {', '.join(kinds)}."
+    if limits.held:
+        kept = [in_unit(f"{n} ({ranges[n].lower:.4g}", found.data.channels[n].unit) + ")" for n in limits.held]
+        verb = "is" if len(kept) == 1 else "are"
+        yield (
+            f"Constant in every recording, and kept as {found.begins_like} has it, {verb} {listed(kept)}: "
+            "with lower and upper under [limits] it would be designed."
+        )
 
 
 def _beginning(found: DesignResult) -> Iterator[str]:

@@ -97,7 +97,7 @@ class DesignResult(Result):
     @property
     def sentence(self) -> str:
         """What the recording is expected to do, in a sentence."""
-        kinds = " and ".join(dict.fromkeys(e.kind for e in self.excitations)) + self.as_set_points
+        kinds = (" and ".join(dict.fromkeys(self._kinds.values())) or "constant inputs") + self.as_set_points
         if self.parameter is not None:
             change = in_unit(f"from {self.before:.2g} to {self.after:.2g}", self.unit)
             return f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the standard deviation of {self.parameter} {change}."
@@ -112,8 +112,10 @@ class DesignResult(Result):
             f"{digits(self.seconds, 4)} s of {kinds} are expected to bring the right one of {len(self.names)} hypotheses to a "
             f"probability of {self.expected.after:.2f}"
         )
+        likely = self.names[int(np.argmax(self.expected.before))]
+        if not self.expected.gains:
+            return f"{told}, which is no more than {likely} has today ({self.expected.today:.2f})."
         if max(self.expected.before) >= WANTED:
-            likely = self.names[int(np.argmax(self.expected.before))]
             return (
                 f"These recordings tell the hypotheses apart already: {likely} has a probability of {max(self.expected.before):.2f}. To "
                 f"confirm it, {told[0].lower()}{told[1:]}."
@@ -126,7 +128,10 @@ class DesignResult(Result):
         return f"<design for {self.data.name}: {self.sentence}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
-        excitations = {name: vars(e) for name, e in zip(self.inputs, self.excitations, strict=True)}
+        excitations = {
+            name: vars(e) if name in self._kinds else {"kind": "constant", "value": self.limits.commanded[name].lower}
+            for name, e in zip(self.inputs, self.excitations, strict=True)
+        }
         result: dict[str, Any] = {
             "schema": SCHEMA,
             "dataset": self.data.name,
@@ -146,10 +151,12 @@ class DesignResult(Result):
             "hypotheses": [
                 {"name": n, "probability": p} for n, p in zip(self.names, self.expected.before, strict=True)
             ],
+            "probability_today": self.expected.today,
             "expected_probability": self.expected.after,
             "expected_probability_random": self.expected.random,
             "evidence_nats": self.expected.nats.tolist(),
             "seconds_for_0.95": self.needed,
+            "worth_recording": self.expected.worth_recording,
             "cannot_be_told_apart": [list(pair) for pair in self.alike],
             "groups": [[self.names[k] for k in group] for group in self.expected.groups],
         }
@@ -203,6 +210,12 @@ class DesignResult(Result):
     def what(self) -> str:
         """What is designed, in a word or two."""
         return "set point" if self.follows else "input"
+
+    @property
+    def _kinds(self) -> dict[str, str]:
+        """The kind of signal by input, of those that move."""
+        kinds = {name: e.kind for name, e in zip(self.inputs, self.excitations, strict=True)}
+        return {name: kinds[name] for name in self.limits.designed}
 
     @property
     def as_set_points(self) -> str:

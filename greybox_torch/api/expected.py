@@ -89,8 +89,13 @@ class Expected:
 
     @property
     def decides(self) -> bool:
-        """Whether it tells any of those in question apart."""
-        return not bool(self.alike[np.ix_(self.in_question, self.in_question)].all())
+        """Whether it tells any of those in question apart: of two that a third is alike to, either may still be that one."""
+        return sum(any(k in self.in_question for k in group) for group in self.groups) > 1
+
+    @property
+    def worth_recording(self) -> bool:
+        """Whether more is expected to be known after it than before."""
+        return self.decides and self.gains
 
     @property
     def after(self) -> float:

@@ -4,23 +4,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import Any
 
 import numpy as np
 
-from greybox_torch.data import DataSet
+from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.model import GreyBoxModel
 
 SECONDS, START = "seconds", "start"
 WIDENED = 0.1
 """Share of what was recorded by which outputs may go beyond it, each way, where no limit is given: noise ends no recording."""
+ROUNDING = 1e-9
+"""Share of its size by which a constant may seem to move: interpolation between equal samples rounds."""
 
 EVERY_INPUT = (
-    "Every input is designed: one that nobody can set, as a recorded temperature, is given limits as narrow as it stays by itself "
-    "([limits] on the card, in Python limits=)."
+    "Every input that may move is designed: one that nobody can set, as a recorded temperature, is given limits as narrow as it stays by "
+    "itself, or lower = upper ([limits] on the card, in Python limits=)."
 )
 """What a reader has to know of a model with several inputs."""
 
@@ -48,7 +50,8 @@ class Limits:
 
     ``set_points`` has the range of the set point for every input that a loop drives. ``begin``: where what is commanded begins, by input,
     of set points and of inputs whose rate is limited. ``start``: states that the recording is to begin with. ``recorded``: inputs and
-    outputs that nothing is given for, whose range is what was recorded.
+    outputs that nothing is given for, whose range is what was recorded. ``held``: inputs that no range is given for and that were
+    constant in every recording, kept so.
     """
 
     seconds: float
@@ -59,6 +62,12 @@ class Limits:
     start: Mapping[str, float] = field(default_factory=dict)
     begin: Mapping[str, float] = field(default_factory=dict)
     recorded: tuple[str, ...] = ()
+    held: tuple[str, ...] = ()
+
+    @property
+    def designed(self) -> list[str]:
+        """Inputs, or those whose set point, may move."""
+        return [name for name, own in self.commanded.items() if own.half > 0.0]
 
     @property
     def commanded(self) -> dict[str, Range]:
@@ -97,15 +106,37 @@ def limits_of(
             )
     recorded = max(r.seconds for r in data.recordings)
     seconds = _positive(given.get(SECONDS, recorded), f"{place} {SECONDS}")
-    return Limits(
+    ranges = {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, 0.0), may_rest=True) for n in inputs}
+    held = tuple(n for n in inputs if n not in (follows or {}) and not _has_range(given.get(n)) and _constant(data, n))
+    found = Limits(
         seconds,
-        {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, 0.0)) for n in inputs},
+        ranges,
         {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, WIDENED)) for n in outputs},
         {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
         {n: _range(given.get(o), f"{place} {o}", _recorded(data, o, 0.0)) for n, o in (follows or {}).items()},
         {} if START in signals else _start(given.get(START, {}), sorted(own), f"{place} {START}"),
-        recorded=tuple(n for n in (*inputs, *outputs) if n not in given),
+        recorded=tuple(n for n in (*inputs, *outputs) if n not in given and n not in held),
+        held=held,
     )
+    return held_as_in(found, data.recordings[0])
+
+
+def held_as_in(limits: Limits, recording: Recording) -> Limits:
+    """The limits with the inputs that are ``held`` at what they were in a recording: the one that the next begins like."""
+    at = {name: float(np.nanmedian(recording.signals[name])) for name in limits.held}
+    return replace(
+        limits, inputs=dict(limits.inputs) | {n: replace(limits.inputs[n], lower=v, upper=v) for n, v in at.items()}
+    )
+
+
+def _has_range(entry: Any) -> bool:
+    return isinstance(entry, Mapping) and not {"lower", "upper"}.isdisjoint(entry)
+
+
+def _constant(data: DataSet, name: str) -> bool:
+    """Whether a channel has one value throughout each of the recordings, if another one in each."""
+    ranges = [(np.nanmin(r.signals[name]), np.nanmax(r.signals[name])) for r in data.recordings]
+    return all(high - low <= ROUNDING * max(abs(low), abs(high)) for low, high in ranges)
 
 
 def _start(entry: Any, states: list[str], place: str) -> dict[str, float]:
@@ -126,7 +157,8 @@ def _recorded(data: DataSet, name: str, widened: float) -> Range:
     return Range(lower - more, upper + more)
 
 
-def _range(entry: Any, place: str, default: Range | None) -> Range:
+def _range(entry: Any, place: str, default: Range | None, *, may_rest: bool = False) -> Range:
+    """``may_rest``: of an input, which can be kept at one value, `lower = upper`."""
     if entry is None:
         assert default is not None
         return default
@@ -136,11 +168,8 @@ def _range(entry: Any, place: str, default: Range | None) -> Range:
         )
     lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
     upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")
-    if not lower < upper:
-        raise UserError(
-            f"{place}: lower = {lower:g} is not below upper = {upper:g}; expected a range, lower first; "
-            "a narrow one for an input that stays as it is"
-        )
+    if not (lower < upper or (may_rest and lower == upper)):
+        raise UserError(f"{place}: lower = {lower:g} is not below upper = {upper:g}; expected a range, lower first")
     return Range(lower, upper, _positive(entry.get("rate", math.inf), f"{place}, rate"))
 
 

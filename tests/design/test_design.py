@@ -74,6 +74,12 @@ def test_the_same_seed_gives_the_same_input(undecided, designed) -> None:
     assert again.to_json() == designed.to_json()
 
 
+def test_an_input_that_is_kept_is_no_excitation(undecided) -> None:
+    kept = gt.design(undecided, seconds=0.5, limits={"voltage": {"lower": 2.0, "upper": 2.0}})
+    assert (kept.inputs["voltage"] == 2.0).all()
+    assert kept.content(Path("next"))["inputs"] == {"voltage": {"kind": "constant", "value": 2.0}}
+
+
 def test_precision(undecided) -> None:
     found = gt.design(undecided, precision="J", seconds=1.0)
     assert found.after is not None and found.before is not None and 0 < found.after < found.before
@@ -81,7 +87,8 @@ def test_precision(undecided) -> None:
     assert found.sentence.startswith("1 s of ") and EVERY_INPUT not in found.notes
     long = replace(found, time=np.arange(3600.0))
     assert long.sentence.startswith("3600 s of ")  # seen: 3.6e+03 s
-    two = replace(found, inputs={**found.inputs, "room": found.inputs["voltage"]})
+    ranges = {**found.limits.inputs, "room": found.limits.inputs["voltage"]}
+    two = replace(found, limits=replace(found.limits, inputs=ranges))
     assert EVERY_INPUT in two.notes
     correlated = replace(found, memory=510.0)
     assert any("correlated over up to 510 samples, and so many count as one" in line for line in correlated.notes)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.errors import UserError
-from greybox_torch.experiment_design.limits import limits_of
+from greybox_torch.experiment_design.excitation import Excitation
+from greybox_torch.experiment_design.limits import held_as_in, limits_of
 
 
 @pytest.fixture(scope="module")
@@ -35,6 +36,31 @@ def test_what_was_recorded_is_the_default(data, motor) -> None:
     assert speed.upper > 10.0 and speed.lower < data.recordings[0].signals["speed"].min()
 
 
+@pytest.fixture
+def constant(data_set):
+    """Another voltage in each recording, interpolated: constant but for rounding."""
+    time = 0.01 * np.arange(300)
+    own = [{"voltage": v + 1e-16 * np.sin(time), "speed": 10 * np.sin(time)} for v in (0.9, 1.3)]
+    return data_set({"voltage": "V", "speed": "rad/s"}, own)
+
+
+def test_an_input_that_was_constant_is_kept_so(constant, motor) -> None:
+    """Seen: a rope's length, 0.9 m in one recording and 1.3 m in another, that was to move with 2 Hz."""
+    found = limits_of(constant, motor, {"voltage": {"rate": 2.0}}, "[limits]")
+    assert found.held == ("voltage",) and found.designed == [] and "voltage" not in found.recorded
+    at = held_as_in(found, constant.recordings[1]).inputs["voltage"]
+    assert at.lower == at.upper == pytest.approx(1.3) and at.rate == 2.0
+    free = limits_of(constant, motor, {"voltage": {"lower": 0.5}}, "[limits]")
+    assert free.held == () and free.inputs["voltage"].upper == pytest.approx(1.3) and free.designed == ["voltage"]
+
+
+def test_one_value_is_a_range_of_an_input(data, motor) -> None:
+    found = limits_of(data, motor, {"voltage": {"lower": 2, "upper": 2}}, "[limits]")
+    assert (found.inputs["voltage"].half, found.inputs["voltage"].middle, found.designed) == (0.0, 2.0, [])
+    moved = Excitation("steps", 0.5, 2.0, 0.4, 0.7, 1).sampled(0.01 * np.arange(100), found.inputs["voltage"])
+    assert (moved == 2.0).all()
+
+
 def test_what_the_table_says(data, motor) -> None:
     table = {"seconds": 5, "voltage": {"lower": -1, "upper": 2, "rate": 40}, "speed": {"upper": 50.0}}
     found = limits_of(data, motor, table, "[limits]")
@@ -57,6 +83,7 @@ def test_what_the_table_says(data, motor) -> None:
         ({"voltage": 3}, r"\[limits\] voltage: found 3; expected \{ lower"),
         ({"voltage": {"most": 3}}, r"expected \{ lower"),
         ({"voltage": {"lower": 2, "upper": 1}}, r"lower = 2 is not below upper = 1"),
+        ({"speed": {"lower": 2, "upper": 2}}, r"lower = 2 is not below upper = 2; expected a range"),
         ({"voltage": {"rate": -1}}, r"voltage, rate: found -1, expected a number above zero"),
         ({"speed": {"upper": True}}, r"speed, upper: found True, expected a number"),
     ],

@@ -164,7 +164,24 @@ def test_without_groups_each_pair_is_told() -> None:
     apart = Expected((0.6, 0.3, 0.07), np.array([[0.0, 9.0, 9.0], [9.0, 0.0, 9.0], [9.0, 9.0, 0.0]]), None)
     assert not apart.by_groups and [len(group) for group in apart.groups] == [1, 1, 1]
     chain = Expected((0.6, 0.3, 0.07), np.array([[0.0, 0.1, 9.0], [9.0, 0.0, 0.1], [9.0, 9.0, 0.0]]), None)
-    assert chain.decides and not chain.by_groups and chain.groups == [[0, 1, 2]]
+    assert not chain.by_groups and chain.groups == [[0, 1, 2]] and not chain.decides
+
+
+def test_no_more_than_is_known_is_no_promise(undecided: DiagnosisResult) -> None:
+    """Seen: "expected to bring the right one of 4 hypotheses to a probability of 0.97", of three that count as one and have it today."""
+    found = gt.design(undecided, seconds=0.5)
+    nats = np.array(
+        [[0.0, 0.7, 0.8, 900.0], [2.0, 0.0, 5.0, 900.0], [0.9, 5.0, 0.0, 900.0], [900.0, 900.0, 900.0, 0.0]]
+    )
+    chain = replace(found, names=("a", "b", "c", "d"), expected=Expected((0.46, 0.46, 0.05, 1e-9), nats, nats))
+    assert "tells these hypotheses apart, whichever is right: a, b, c." in chain.sentence
+    two = np.array([[0.0, 9.0], [9.0, 0.0]])
+    known = replace(found, expected=Expected((0.965, 0.02), two, two))
+    assert "which is no more than Coulomb friction at rotor has today (0.97)" in known.sentence
+    for one in (chain, known):
+        told = " ".join(one.notes)
+        assert "not worth recording" in told and "Record it" not in told
+        assert one.content(Path("next"))["worth_recording"] is False
 
 
 def instead(alone: Rival, finding: str, probability: float, *laws) -> Rival:
