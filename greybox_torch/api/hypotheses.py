@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -174,7 +175,8 @@ def _if_large(times_noise: Any, sentence: str) -> str:
 
 
 def _content(path: Path) -> dict[str, Any]:
-    content = read_json(path, "results of greybox diagnose")
+    command = f"greybox diagnose CARD --out {shlex.quote(str(path.parent))}"
+    content = read_json(path, f"results of greybox diagnose (`{command}` writes them)")
     if not isinstance(content, dict) or content.get("schema") != SCHEMA:
         found = content.get("schema") if isinstance(content, dict) else type(content).__name__
         raise UserError(f'{path}, "schema": found {found!r}, expected "{SCHEMA}"')

@@ -9,6 +9,7 @@ import typer
 from greybox_torch.api.check import check
 from greybox_torch.commands.options import Options
 from greybox_torch.data import load_dataset
+from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError
 from greybox_torch.systems import BUILT_IN
 
@@ -19,10 +20,12 @@ def run(target: str, options: Options) -> None:
     Args:
         target: a model's name, or a data card that names one.
     """
-    is_card = target.endswith(".toml") or (
-        target not in BUILT_IN and Path(target).is_dir()
-    )  # of a folder it says which
-    data = load_dataset(Path(target)) if is_card else None
+    path = Path(target)
+    of_no_model = path.is_dir() or (
+        path.suffix.lower() in READERS and path.is_file()
+    )  # what to write is said of a card
+    is_card = target.endswith(".toml") or (target not in BUILT_IN and of_no_model)
+    data = load_dataset(path) if is_card else None
     name = options.model or (target if data is None else data.model)
     if name is None:
         raise UserError(

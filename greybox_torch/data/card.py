@@ -21,6 +21,7 @@ from greybox_torch.data.card_errors import describe
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError, did_you_mean, quoted
+from greybox_torch.name_lists import brief
 from greybox_torch.reading import read_toml
 
 USUAL = "dataset.toml"
@@ -183,6 +184,9 @@ def _what_else(path: Path) -> str:
     """What stands there where it is often named in the place of a card: its folder, a recording, a name that is not quite right."""
     if path.is_dir() and (path / USUAL).is_file():
         return f"is a folder; expected the card in it, {path / USUAL}"
+    if path.is_dir():
+        others = brief(sorted(str(other) for other in path.glob("*.toml")))
+        return f"is a folder without {USUAL}; expected a data card" + (f", such as {others}" if others else "")
     if path.suffix.lower() in READERS and path.is_file():
         return f"is a recording; expected a data card, {USUAL} (`greybox card {shlex.quote(str(path))}` writes one)"
     if path.suffix.lower() == ".py" and path.is_file():

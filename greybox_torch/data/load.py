@@ -125,6 +125,10 @@ def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]
     """The slice of the file's samples that an experiment stands for."""
     length = len(next(iter(source.columns.values())))
     start, stop = rows or (0, length)
+    if rows and length == 0:
+        raise UserError(
+            f"{source.tables[0].path}: has no samples; expected lines of numbers below its header ({place})"
+        )
     if rows and not 0 <= start < stop <= length:
         raise UserError(
             f"{place}, rows: found [{start}, {stop}], expected 0 <= start < stop <= {length}, "

@@ -154,6 +154,8 @@ def _tried(law: type[Mechanism], what: str, call: Any) -> Any:
         return call()
     except NotImplementedError:
         raise _wrong(law, f"does not define {what}") from None
+    except UserError as error:
+        raise _wrong(law, f"{what}: {error}") from None
     except Exception as error:
         raise _wrong(law, f"{what} raised {_said(error)}") from None
 

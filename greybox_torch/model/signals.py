@@ -51,7 +51,7 @@ class Signals(Mapping[str, Any]):
     def _unknown(self, name: str) -> UserError:
         known = ", ".join(self._values) or "none"
         return UserError(
-            f"the model asks for the {self._kind} '{name}'{did_you_mean(name, self._values)}, which it does not declare (declared: {known})"
+            f"the equations ask for the {self._kind} '{name}'{did_you_mean(name, self._values)}, which is not declared (declared: {known})"
         )
 
 

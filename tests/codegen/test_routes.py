@@ -113,7 +113,7 @@ def test_equations_that_raise_are_refused() -> None:
         make_stepper(lag(rate), ())
     with pytest.raises(UserError, match=r"expected functions of torch .*, such as torch\.sin"):
         make_stepper(lag(lambda x, u, p: np.sin(x.level)), ())
-    with pytest.raises(UserError, match=r"'stage', which it does not declare \(declared: level\)"):
+    with pytest.raises(UserError, match=r"'stage', which is not declared \(declared: level\)"):
         make_stepper(lag(lambda x, u, p: x.stage), ())
 
 

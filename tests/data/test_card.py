@@ -145,7 +145,7 @@ def test_infinite_bounds_are_bounds(tmp_path: Path) -> None:
 def test_not_a_card(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"nowhere.toml: no such file; expected a data card"):
         read_card(tmp_path / "nowhere.toml")
-    with pytest.raises(UserError, match="cannot be read: Is a directory"):
+    with pytest.raises(UserError, match=r"is a folder without dataset\.toml; expected a data card"):
         read_card(tmp_path)
     (tmp_path / "latin.toml").write_bytes("name = 'Prüfstand'".encode("latin-1"))
     with pytest.raises(UserError, match="not UTF-8 text"):

@@ -62,6 +62,14 @@ def test_rows_out_of_range(bench: Path, edit: Edit, rows: str) -> None:
     assert f'[[experiment]] "Steps", rows: found {rows}, expected 0 <= start < stop <= 40' in str(error.value)
 
 
+def test_rows_of_a_file_without_samples(bench: Path, edit: Edit) -> None:
+    """Seen: "rows: found [0, 20], expected 0 <= start < stop <= 0"."""
+    edit(bench / "dataset.toml", 'role = "estimation"', "rows = [0, 20]")
+    (bench / "steps.csv").write_text("t,u,y\n")
+    with pytest.raises(UserError, match=r'steps.csv: has no samples; expected .* \[\[experiment\]\] "Steps"\)$'):
+        load_dataset(bench / "dataset.toml")
+
+
 def test_ten_samples_are_enough_and_nine_are_not(bench: Path, edit: Edit) -> None:
     edit(bench / "dataset.toml", 'role = "estimation"', "rows = [0, 10]")
     assert len(load_dataset(bench / "dataset.toml").recordings[0]) == 10

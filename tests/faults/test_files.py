@@ -102,7 +102,7 @@ COMMANDS = [
     (["inspect", "nowhere.toml"], "nowhere.toml: no such file"),
     (["inspect", "nowhere.toml"], "expected a data card"),
     (["inspect", "."], "is a folder; expected the card in it, dataset.toml"),
-    (["inspect", ".."], "Is a directory"),
+    (["inspect", ".."], "..: is a folder without dataset.toml; expected a data card"),
     (["fit", "datset.toml"], 'no such file (did you mean "dataset.toml"?)'),
     (
         ["diagnose", "a.csv"],
@@ -168,11 +168,25 @@ def test_command_line(answer: Answer, arguments: list[str], message: str) -> Non
     answer(*arguments, message=message)
 
 
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ("inspect", "is a folder without dataset.toml; expected a data card, such as cards/a.toml and cards/b.toml"),
+        ("design", "expected results of greybox diagnose (`greybox diagnose CARD --out cards` writes them)"),
+    ],
+)
+def test_a_folder_of_something_else(spoilt: Path, answer: Answer, command: str, message: str) -> None:
+    (spoilt / "cards").mkdir()
+    for name in ("a.toml", "b.toml"):
+        (spoilt / "cards" / name).write_text("")
+    answer(command, "cards", message=message)
+
+
 FIRST_STEPS = [
     (["new", "my_motor"], "my_motor.py: is there already and is not overwritten"),
     (["new", "drive", "--like", "moter"], 'did you mean "motor"?'),
     (["card", "a.csv"], "dataset.toml: is there already and is not overwritten"),
-    (["check", "a.csv"], "model 'a.csv' is unknown; expected a built-in system (robot_arm) or a file and class"),
+    (["check", "a.csv"], "a.csv: is a recording; expected a data card, dataset.toml (`greybox card a.csv` writes one)"),
 ]
 
 

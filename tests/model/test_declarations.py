@@ -133,7 +133,7 @@ def test_names_that_are_not_declared() -> None:
     assert values.replaced(level=2.0).level == 2.0
     with pytest.raises(
         UserError,
-        match=r"the state 'levl' \(did you mean \"level\"\?\), which it does not declare \(declared: level\)$",
+        match=r"the state 'levl' \(did you mean \"level\"\?\), which is not declared \(declared: level\)$",
     ):
         values.levl  # noqa: B018
 

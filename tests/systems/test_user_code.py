@@ -39,7 +39,7 @@ MOTOR = (Path(__file__).parents[1] / "machines" / "motor.py").read_text()
         ),
         (MOTOR + "\n    def __init__(self):\n        quit()\n", r"line \d+: creating it called sys.exit"),
         ("x = '\udcff'".encode("utf-8", "surrogateescape").decode("latin-1"), "is not defined"),
-        (MOTOR.replace("p.b", "p.bb"), r"motor.py, class Motor, line \d+: the model asks for the parameter 'bb'"),
+        (MOTOR.replace("p.b", "p.bb"), r"motor.py, class Motor, line \d+: the equations ask for the parameter 'bb'"),
         (
             MOTOR.replace("unit=", "fix=True, unit=", 1),
             r"line \d+: running it raised TypeError: .*'fix' \(did you mean \"fixed\"\?\); it takes name, value, .*fixed",

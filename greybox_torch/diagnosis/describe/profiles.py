@@ -101,7 +101,8 @@ def _over(mechanism: Mechanism, around: Surroundings) -> str:
 
 
 def unit_at(around: Surroundings, signal: str) -> str:
-    """The unit of a signal at a port; what a body carries has that of the forces there."""
+    """The unit of a signal at a port; what a body carries has that of the forces there, and a delayed input that of the input."""
+    signal = "input" if signal == "delayed" else signal
     return around.units.get(signal, around.force_unit if signal == "load" and "speed" in around.units else "")
 
 

@@ -40,6 +40,8 @@ def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:
         return given
     if signal in ("input", "output"):
         return str(getattr(site, signal, signal))
+    if signal == "delayed":
+        return f"delayed {signal_name(model, site, 'input')}"
     if signal.startswith((INPUT, STATE)):
         return signal.partition("@")[2]
     if signal.startswith(DIFFERENCE):

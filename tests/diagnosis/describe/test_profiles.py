@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve
+from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve, unit_at
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.attachment import attach
@@ -43,6 +43,10 @@ def test_a_curve_over_the_range_is_drawn_evenly_and_none_beyond_the_range(motor)
     np.testing.assert_array_equal(drawn(motor, Unknown("speed"), 3).values, even)
     beyond = drawn(motor, Unknown("speed", 8, part=(5.5, 6.5)), 3).values
     assert (beyond.min(), beyond.max()) == (-6.0, 6.0) and set(even) <= set(beyond)
+
+
+def test_a_delayed_input_has_the_unit_of_the_input() -> None:
+    assert unit_at(Surroundings({}, {"input": "N"}, "N", 0.01), "delayed") == "N"
 
 
 def test_what_multiplies_a_curve_is_given_with_it(motor) -> None:

@@ -82,6 +82,7 @@ def test_in_words() -> None:
         ("actuator", "position", "motor"),
         ("actuator", "speed", "w_m"),
         ("actuator", "input", "torque"),
+        ("actuator", "delayed", "delayed torque"),
         ("sensor.drum", "output", "drum"),
         ("gear", "deflection", "gear.deflection"),
         ("drum", "position@motor_shaft", "motor"),
