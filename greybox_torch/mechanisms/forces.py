@@ -24,7 +24,7 @@ FAR_ABOVE = 2.0
 
 
 BIAS_OR_ASYMMETRY = (
-    "standstill and reversals without load: a bias pushes at rest, an asymmetry does not; where dry friction holds it at rest, no recording "
+    "standstill and reversals without load: a bias pushes at rest, an asymmetry does not; where dry friction holds it, no recording "
     "tells one from the other"
 )
 """In motion both are one and the same constant force."""
