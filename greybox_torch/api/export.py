@@ -13,7 +13,7 @@ from greybox_torch.errors import ArgumentError, UserError, did_you_mean
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.exporting.c_source import c_files
-from greybox_torch.exporting.exported import ExportedModel, exported, identifier_of
+from greybox_torch.exporting.exported import ExportedModel, exported, identifier_of, step_without_data
 from greybox_torch.exporting.fmu import fmu_files
 from greybox_torch.exporting.joints.mjcf import mjcf
 from greybox_torch.exporting.joints.snippet import Snippet
@@ -106,7 +106,9 @@ def export(
         hold = check_data(data).hold
         step = _needed(given, data) if step is None else step
     made = exported(given, name, step, hold)
-    return ExportResult(given, to, made, dict(WRITERS[to](made)))
+    return ExportResult(
+        given, to, made, dict(WRITERS[to](made)), "" if step is not None else step_without_data(given)[1]
+    )
 
 
 def check_kind(to: str) -> None:

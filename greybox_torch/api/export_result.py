@@ -25,12 +25,25 @@ DIGITS = 6
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ExportResult(Result):
-    """``model`` as ``contents``, files by name; ``exported`` says what is in them."""
+    """``model`` as ``contents``, files by name; ``exported`` says what is in them, ``step_from`` what the step is where recordings have
+    not said which one they need.
+    """
 
     model: GreyBoxModel
     to: str
     exported: ExportedModel
     contents: dict[str, str | bytes]
+    step_from: str = ""
+
+    @property
+    def warnings(self) -> list[str]:
+        """What was taken without being asked of recordings."""
+        if not self.step_from:
+            return []
+        return [
+            f"without recordings (--dataset, in Python data=) nothing says how small steps have to be: {self.exported.step:g} s is "
+            f"{self.step_from}, and inputs are held between samples. With recordings they are as in greybox simulate"
+        ]
 
     @property
     def rows(self) -> list[dict[str, Any]]:
@@ -53,6 +66,7 @@ class ExportResult(Result):
             "to": self.to,
             "name": self.exported.identifier,
             "step": self.exported.step,
+            "warnings": self.warnings,
             "files": [str(folder / name) for name in self.contents],
             "variables": self.rows,
         }
@@ -62,6 +76,8 @@ class ExportResult(Result):
             Text(f"{self.exported.title} as {self.to}, steps of at most {self.exported.step:g} s"), soft_wrap=True
         )
         print_table(console, _COLUMNS, self._table(), prose=["description"], digits=DIGITS)
+        for found in self.warnings:
+            console.print(Text(f"warning: {found}.", style="yellow"), soft_wrap=True)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
         return {folder / name: content for name, content in self.contents.items()}
@@ -71,7 +87,8 @@ class ExportResult(Result):
         return _influence(self.model)
 
     def _repr_html_(self) -> str:
-        return notebook.page(repr(self)[1:-1], notebook.table(_COLUMNS, self._table(), DIGITS))
+        told = (notebook.sentence(f"warning: {found}.") for found in self.warnings)
+        return notebook.page(repr(self)[1:-1], notebook.table(_COLUMNS, self._table(), DIGITS), *told)
 
     def _table(self) -> list[list[str | float]]:
         return [

@@ -38,8 +38,8 @@ def fit_advice(scores: Scores, begun: str) -> str | None:
     if after <= 0.0:
         return (
             f"The estimate simulates the {on} experiments no better than a constant would (mean fit {after:.3g} %): a column has another "
-            "sign, unit or meaning than the card says (`greybox inspect` draws them), the model lacks something, or no free run follows "
-            f"this machine for long. {DIAGNOSE}"
+            "sign, unit or meaning than the card says (`greybox inspect` draws them), a term of the equations has the wrong sign, the "
+            f"model lacks something, or no free run follows this machine for long. {DIAGNOSE}"
         )
     if np.isfinite(before) and after < before - WORSE:
         return (

@@ -19,6 +19,7 @@ from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.data import DataSet
+from greybox_torch.data.steps import steps_of
 from greybox_torch.errors import NumericalError
 from greybox_torch.estimate.comparison import AUGMENTED, START
 from greybox_torch.evaluation import Evaluation, evaluated
@@ -127,7 +128,7 @@ class SimulationResult(Result):
             console.print(Text(f"warning: {found}.", style="yellow"), soft_wrap=True)
 
     def files(self, folder: Path) -> dict[Path, str | bytes]:
-        """A CSV file of an experiment: time, and every output measured and simulated; and a figure of each."""
+        """A CSV file of an experiment: time in seconds from its start, and every output measured and simulated; and a figure of each."""
         tables = {folder / f"{stem}.csv": self._table(e) for e, stem in enumerate(file_stems(self.data, "simulated"))}
         return {**tables, **figure_files(folder, self.data, {self.name: self.run}, "simulated")}
 
@@ -147,15 +148,22 @@ class SimulationResult(Result):
 
     def _table(self, experiment: int) -> bytes:
         recording, names = self.data.recordings[experiment], [o.name for o in self.run.problem.model.outputs]
-        columns = [recording.time]
+        columns = [_since_the_start(recording.time)]
         for k, name in enumerate(names):
             columns += [recording.signals[name], self.run.comparison.simulated[experiment][:, k]]
         header = ",".join(["time", *[f"{name}_{what}" for name in names for what in ("measured", "simulated")]])
         buffer = BytesIO()
-        # of the time more digits: seconds since 1970 have ten before the point
-        digits = ["%.15g", *["%.10g"] * (len(columns) - 1)]
+        digits = ["%.12g", *["%.10g"] * (len(columns) - 1)]
         np.savetxt(buffer, np.column_stack(columns), fmt=digits, delimiter=",", header=header, comments="")
         return buffer.getvalue()
+
+
+def _since_the_start(time: np.ndarray) -> np.ndarray:
+    """Time stamps (N,) in s from the first one, in evenly spaced steps where floats alone made them uneven, and in no more digits than
+    the stamps hold.
+    """
+    held = int(-np.log10(np.spacing(np.abs(time).max())))
+    return np.round(np.append(0.0, np.cumsum(steps_of(time))), min(held + 1, 12))
 
 
 @np.errstate(all="ignore")

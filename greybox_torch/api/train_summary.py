@@ -112,6 +112,7 @@ def penalty_at_an_end(found: Trained) -> str:
     if not (end := polished.at_an_end):
         return ""
     if end == "largest":
-        return "The chosen penalty is the largest that was tried: a larger one may predict as well."
+        larger = f"penalty={10.0 * found.settings.penalty:g}"
+        return f"The chosen penalty is the largest that was tried: a larger one may predict as well (`gt.TrainingSettings({larger})`)."
     lower = f"penalty={0.1 * found.settings.penalty:g}"
     return f"The chosen penalty is the least that was tried: a lower one may predict better (`gt.TrainingSettings({lower})` begins there)."

@@ -104,7 +104,9 @@ def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
             told = f"deg{degrees[1]}"
         words = re.findall(r"[^\W\d_]+", told.replace("min", ""))
         known = turns_per_time(told) or all(_KNOWN.fullmatch(word) for word in words)
-        alone = told in ("deg", "°", "min", "degrees", "K")  # of a temperature, or the least, or a gain
+        alone = told in ("min", "K")  # the least, a gain
+        if told in ("deg", "°", "degrees"):  # of a temperature, where the card may say one
+            alone = "[temperature]" in (_dimension(said) or {})
         return (told, not alone) if known else ("", False)
     stem, separator, last = parts_of(column)
     if last in OF_QUANTITY and OF_QUANTITY[last].match(stem):

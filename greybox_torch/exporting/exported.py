@@ -93,7 +93,7 @@ def exported(
         tuple(Variable(i.name, i.unit, 0.0, i.description) for i in whole.plain.inputs),
         tuple(Variable(o.name, o.unit, 0.0, o.description) for o in whole.outputs),
         tuple(_parameter(p, values.get(p.name, 1.0), is_switch=p.name in switches) for p in whole.declared_parameters),
-        step if step is not None else _sample_time(whole),
+        step if step is not None else step_without_data(whole)[0],
         hold,
         delays,
     )
@@ -113,9 +113,11 @@ def _switchable(model: GreyBoxModel) -> tuple[GreyBoxModel, set[str]]:
     return made, {f"{a.prefix}.{SHARE}" for a in attachments}
 
 
-def _sample_time(model: GreyBoxModel) -> float:
+def step_without_data(model: GreyBoxModel) -> tuple[float, str]:
+    """The integration step, in seconds, where no recordings say which one they need, and what it is, in words."""
     around = model.surroundings.values() if isinstance(model, AugmentedModel) else ()
-    return min((s.sample_time for s in around if s.sample_time > 0.0), default=USUAL_STEP)
+    known = [s.sample_time for s in around if s.sample_time > 0.0]
+    return (min(known), "the sample time that effects were found with") if known else (USUAL_STEP, "a usual one")
 
 
 def identifier_of(model: GreyBoxModel, asked: str | None = None) -> str:

@@ -23,6 +23,13 @@ FAR_ABOVE = 2.0
 """Times the highest frequency of the inputs, where nothing rings: modes were told at 3 and more for gains, real ones are below 0.8."""
 
 
+BIAS_OR_ASYMMETRY = (
+    "standstill and reversals without load: a bias pushes at rest, an asymmetry does not; where dry friction holds it, no recording "
+    "tells one from the other"
+)
+"""In motion both are one and the same constant force."""
+
+
 class ConstantBias(LinearLaw):
     """A constant b."""
 
@@ -32,7 +39,7 @@ class ConstantBias(LinearLaw):
     nature = "a constant offset"
     explanation = "Something constant acts: a force (offset of an amplifier, unbalanced weight, preload), or a flow of heat or of a fluid."
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
-    experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
+    experiment = BIAS_OR_ASYMMETRY
     parameter, measured_in, description = "bias", Per(), "constant force"
 
     def law(self, s: Signals, size: Any) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import torch
 
 from greybox_torch.mechanisms.bristles import bending, bristle, shortest_bristles
-from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.forces import BIAS_OR_ASYMMETRY, ConstantBias
 from greybox_torch.mechanisms.linear_law import LinearLaw, Per
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.sign_change import DryLaw, smooth_sign
@@ -100,7 +100,7 @@ class CoulombAsymmetry(DryLaw):
         "The Coulomb level differs between the two directions of motion (preloaded bearings, seals, gear flanks)."
     )
     source = "A. Janot, M. Gautier, M. Brunot, Data set and reference models of EMPS, 2019"
-    experiment = "standstill and reversals without load: a bias pushes at rest, an asymmetry does not"
+    experiment = BIAS_OR_ASYMMETRY
     parameter, measured_in, description = "delta", Per(), "half the difference of the levels"
 
     def __init__(self, with_level: bool = False) -> None:

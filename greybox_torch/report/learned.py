@@ -13,10 +13,15 @@ from matplotlib.figure import Figure
 
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.mechanisms.matching import law_force
+from greybox_torch.name_lists import listed
 from greybox_torch.report import text
 from greybox_torch.report.style import STYLE, dots_within, with_unit
 from greybox_torch.training import Explanation, Trained
 from greybox_torch.training.learned_force import SignalCurve
+from greybox_torch.training.named_term import NamedTerm
+
+OWN_MOVED = 0.05
+"""Part by which a parameter of the physics is another beside a law than beside the network, from where on the figure says so."""
 
 MOVED = "laws are drawn with a constant that the physics, estimated anew with them, takes over"
 
@@ -43,7 +48,8 @@ def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
         if len(curves) == 1:
             moved = _draw_laws(panels[0], curves[0], found, explained)
         # below the panels, where it hides nothing
-        told = {"title": MOVED, "title_fontsize": 7, "alignment": "left"} if moved else {}
+        notes = [*([MOVED] if moved else []), *(taken_over(found, explained) if len(curves) == 1 else [])]
+        told = {"title": "\n".join(notes), "title_fontsize": 7, "alignment": "left"} if notes else {}
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, **told)
     return figure
 
@@ -64,8 +70,7 @@ def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explan
     around = found.hybrid.surroundings[found.hybrid.network.port]
     values = np.linspace(curve.values[0], curve.values[-1], 300)
     unit, moved = around.force_unit, False
-    drawn = [term for term in explained.terms if term.match is not None]
-    for term, colour in zip(drawn, LAW_COLOURS, strict=False):
+    for term, colour in zip(_drawn(explained), LAW_COLOURS, strict=False):
         mechanism = term.attachment.mechanism
         force = law_force(mechanism, around, {curve.signal: torch.as_tensor(values)}, term.parameters)
         offset = offset_of(curve, values, force)
@@ -73,6 +78,29 @@ def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explan
         by = f" {'+' if offset > 0 else '−'} {text.with_unit(digits(abs(offset)), unit)}" if offset else ""
         axes.plot(values, force + offset, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}")
     return moved
+
+
+def _drawn(explained: Explanation) -> list[NamedTerm]:
+    return [term for term in explained.terms if term.match is not None][: len(LAW_COLOURS)]
+
+
+def taken_over(found: Trained, explained: Explanation) -> list[str]:
+    """For every law that is drawn, a line of the parameters of the physics that do in the curve's place what the law does not, or the other
+    way round: with another damping beside it a law lies beside the curve, and does the same.
+    """
+    problem = found.result.problem
+    units, beside = {p.name: p.unit for p in problem.model.declared_parameters}, problem.values_by_name
+    lines = []
+    for term in _drawn(explained):
+        own = {name: (term.problem.values_by_name[name], beside[name]) for name in explained.own}
+        told = [
+            f"{text.with_unit(f'{name} = {digits(now)}', units[name])} (beside the network {digits(before)})"
+            for name, (now, before) in own.items()
+            if abs(now - before) > OWN_MOVED * max(abs(now), abs(before))
+        ]
+        if told:
+            lines.append(f"beside {term.attachment.mechanism.name}, {listed(told)}: that is drawn with neither curve")
+    return lines
 
 
 def offset_of(curve: SignalCurve, values: np.ndarray, force: np.ndarray) -> float:

@@ -47,6 +47,7 @@ def test_a_model_that_cannot_follow_the_machine_is_said_to() -> None:
     assert "another sign, unit or meaning than the card says (`greybox inspect` draws them)" in told, (
         "seen: a voltage of the wrong sign"
     )
+    assert "a term of the equations has the wrong sign" in told, "seen: gravity, of which diagnose added twice as much"
 
 
 def test_of_a_machine_whose_free_runs_overflow_nothing_is_said() -> None:

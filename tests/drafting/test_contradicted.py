@@ -31,6 +31,8 @@ TOLD = {
     'a = { column = "n_rpm", unit = "rad/s", file_unit = "deg/s" }': ("rpm", "deg/s"),
     'a = { column = "n_rpm", unit = "rev" }': ("rpm", "rev"),
     'a = { column = "angle (deg)", unit = "rad" }': ("deg", "rad"),
+    'a = { column = "Pendelwinkel [°]", unit = "m" }': ("°", "m"),
+    'a = { column = "angle (deg)", unit = "N" }': ("deg", "N"),
     'a = { column = "q_deg", unit = "rad/s", derivative = 5.0 }': ("deg", "rad/s"),
     'a = { column = "i_A", unit = "V" }': ("A", "V"),
     'a = { column = "torque_Nm", unit = "rad" }': ("N m", "rad"),
@@ -67,6 +69,8 @@ SILENT = [
     'a = { column = "strokes/min", unit = "1/s" }',
     'a = { column = "pulses/ms", unit = "1/s" }',
     'a = { column = "T [°C]", unit = "degC" }',
+    'a = { column = "T [°]", unit = "degC" }',
+    'a = { column = "T (deg)", unit = "K" }',
     'a = { column = "T (C)", unit = "°C" }',
     'a = { column = "T_K", unit = "degC" }',  # a letter alone
     'a = { column = "amplification (K)", unit = "V" }',

@@ -86,6 +86,13 @@ def double_pendulum(machines: Path) -> gt.GreyBoxModel:
     return made
 
 
+def quick_motor(machines: Path) -> gt.GreyBoxModel:
+    """With a time constant of 20 ms."""
+    made = gt.load_model(f"{machines / 'motor.py'}:Motor")
+    made.set_values({"J": 0.02, "k": 0.1, "b": 1.0})
+    return made
+
+
 def simulated(model: gt.GreyBoxModel, size: float, step: float, hold: str = "zoh", level: float = 0.0) -> Machine:
     draw = np.random.default_rng(5)
     inputs = {i.name: np.repeat(draw.uniform(-1, 1, 6), 20) * size + level for i in model.plain.inputs}
@@ -99,6 +106,7 @@ MACHINES: dict[str, Callable[[Path], Machine]] = {
     "arm with backlash and lag": lambda machines: simulated(arm(), 8.0, 5e-4),
     "arm with a delay": lambda machines: simulated(delayed_arm(), 8.0, 5e-4),
     "double pendulum with friction and delays": lambda machines: simulated(double_pendulum(machines), 0.5, 0.01, "foh"),
+    "motor with a large step": lambda machines: simulated(quick_motor(machines), 1.0, 0.02),
     "tank": lambda machines: simulated(gt.load_model(f"{machines / 'small.py'}:Tank"), 0.1, 0.05, level=0.5),
 }
 

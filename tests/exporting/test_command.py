@@ -61,6 +61,12 @@ def test_a_model_is_named_by_the_user(bench: Path, tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["export", stem, "--to", "c", *named])
     assert done.exit_code == 0, done.output
     assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["drive.c", "drive.h", "example.c"]
+    # steps may be too long, and nothing said so
+    assert "0.01 s is the sample time that effects were found with, and inputs are held" in " ".join(
+        done.output.split()
+    )
+    asked = CliRunner().invoke(app, ["export", stem, "--to", "c", *named, "--step", "0.005", "--json"])
+    assert json.loads(asked.stdout)["warnings"] == []
 
 
 def test_wrong_use(bench: Path) -> None:

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombAsymmetry, CoulombFriction, QuadraticDrag, ViscousFriction
 from greybox_torch.mechanisms.stribeck import StribeckFriction
 from greybox_torch.mechanisms.surroundings import Range, Surroundings
@@ -208,3 +209,9 @@ def test_friction_that_was_never_seen_to_fall_is_no_stribeck_friction(around: Su
     assert law.degenerate(fast, falling, certain) is None
     assert [mechanism.name for mechanism, _ in law.as_two(values)] == ["coulomb_friction", "viscous_friction"]
     assert law.as_two(falling) == ()
+
+
+def test_no_recording_is_promised_to_tell_a_bias_from_an_asymmetry_that_friction_holds() -> None:
+    """Seen: "a bias pushes at rest" of a trolley that 4.5 N of dry friction hold; in motion both are a constant force."""
+    assert ConstantBias.experiment == CoulombAsymmetry.experiment
+    assert "where dry friction holds it, no recording" in ConstantBias.experiment

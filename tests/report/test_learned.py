@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
-from greybox_torch.report.learned import offset_of
+from greybox_torch.report.learned import offset_of, taken_over
 from greybox_torch.training.learned_force import SignalCurve
 
 LEVEL = np.linspace(40.0, 140.0, 30)
@@ -22,3 +25,20 @@ def test_a_law_is_drawn_with_the_constant_that_the_physics_takes_over() -> None:
     learned = np.interp(LEVEL, values, law)
     assert offset_of(curve(learned + 8.0), values, law) == pytest.approx(8.0)
     assert offset_of(curve(learned + 0.1), values, law) == 0.0
+
+
+def test_the_figure_says_what_the_physics_takes_over() -> None:
+    """Seen: a law at +9.7 and -7.1 N where the network has +5.5 and -4 N, as the damping made up for it."""
+
+    def with_damping(b: float) -> Any:
+        declared = [SimpleNamespace(name="b", unit="N s/m"), SimpleNamespace(name="M", unit="kg")]
+        return SimpleNamespace(model=SimpleNamespace(declared_parameters=declared), values_by_name={"b": b, "M": 7.0})
+
+    law = SimpleNamespace(mechanism=SimpleNamespace(name="coulomb_friction"))
+    term = SimpleNamespace(match=0.9, attachment=law, problem=with_damping(4.0))
+    explained: Any = SimpleNamespace(terms=(term,), own=("b", "M"))
+    found: Any = SimpleNamespace(result=SimpleNamespace(problem=with_damping(8.2)))
+    (line,) = taken_over(found, explained)
+    assert line == "beside coulomb_friction, b = 4 N·s/m (beside the network 8.2): that is drawn with neither curve"
+    found.result.problem = with_damping(4.05)
+    assert taken_over(found, explained) == []

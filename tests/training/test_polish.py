@@ -37,3 +37,4 @@ def test_a_penalty_at_the_end_of_those_tried_is_told(chosen: float | None, end: 
     told = penalty_at_an_end(found)
     assert (end in told) if end else not told
     assert ("penalty=1)" in told) == (end == "least")
+    assert ("penalty=100)" in told) == (end == "largest")
