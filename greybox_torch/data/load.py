@@ -17,6 +17,7 @@ from greybox_torch.data.card_constants import constants_of, told_constants
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.dataset import DataSet
+from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.file_units import check_unit_of_time, check_units, in_unit
@@ -71,10 +72,12 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     files = [path.parent / file for file in experiment.file]
     clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
     formulas = card.formulas(experiment)
-    needed = [*(c for formula in formulas.values() for c in formula.columns), *([clock] if clock else [])]
+    clocks = [column for column in (clock, card.time.date if card.time else None) if column]
+    needed = [*(c for formula in formulas.values() for c in formula.columns), *clocks[:1]]
     others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
-    with asked_for(place, formulas, clock, others, read):
-        known = without_error_values(over_files(files, experiment.join, read), card.channels, formulas)
+    with asked_for(place, formulas, clocks, others, read):
+        dated = with_dates(over_files(files, experiment.join, read), card.time, clock)
+        known = without_error_values(dated, card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
