@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -27,6 +27,7 @@ from greybox_torch.data.over_files import over_files
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
+from greybox_torch.data.slower_columns import between_of, slower_column
 from greybox_torch.data.source import Read, Source, source_of
 from greybox_torch.data.steps import EVEN, even_step, unevenness, usual_step
 from greybox_torch.errors import UserError
@@ -87,7 +88,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()
     }
-    recorded = dict(signals)
+    slow = {name: found for name, values in signals.items() if (found := slower_column(name, time, values))}
+    recorded = signals = signals | {name: found.values for name, found in slow.items()}
 
     def missing(name: str, at: float) -> str:
         near = int(np.searchsorted(time, at))
@@ -96,10 +98,9 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     done = _processed(place, card, time, sample_time, signals, missing)
     check_length(len(done.time), place)
     constants = constants_of(place, experiment, len(done.time))
-    between = _between(source, formulas, (start, stop)) if np.array_equal(done.time, time) else {}
-    slower = (
-        f"of a slower file, and as outputs counted at its own samples alone: {', '.join(between)}" if between else ""
-    )
+    own = {name: found.between for name, found in slow.items()}
+    between = between_of(source, formulas, (start, stop)) | own if np.array_equal(done.time, time) else {}
+    slower = f"slower than the rest, an output among them counts at its own samples alone: {', '.join(between)}"
     return Recording(
         name=experiment.name,
         role=experiment.role,
@@ -110,18 +111,16 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         further=tuple(files[1:]),
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
-        notes=(*source.notes, *done.notes, *filter(None, [slower]), *told_constants(card.channels, experiment)),
+        notes=(
+            *source.notes,
+            *done.notes,
+            *(found.note for found in slow.values()),
+            *([slower] if between else []),
+            *told_constants(card.channels, experiment),
+        ),
         between=between,
         constants=frozenset(constants),
     )
-
-
-def _between(source: Source, formulas: Mapping[str, Expression], rows: tuple[int, int]) -> dict[str, NDArray[np.bool_]]:
-    """By channel, the samples at which one of its columns lies between samples of a slower file."""
-    of = {
-        name: [source.between[c] for c in formula.columns if c in source.between] for name, formula in formulas.items()
-    }
-    return {name: np.any(columns, axis=0)[slice(*rows)] for name, columns in of.items() if columns}
 
 
 def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]:
