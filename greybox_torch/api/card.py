@@ -64,6 +64,7 @@ class CardResult(DraftedFile):
             "schema": "greybox-card/1",
             "card": str(self.path),
             "time": clock.column,
+            "date": clock.date or None,
             "time_unit": clock.unit if clock.column is not None else None,
             "sample_time": clock.sample_time,
             "channels": self.rows,

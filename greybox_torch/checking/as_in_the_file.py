@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, read_card
+from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.over_files import over_files
@@ -57,7 +58,8 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     clock = said.columns.get(TIME, card.time.column) if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
     files = [data.path.parent / file for file in said.file]
-    read = without_error_values(over_files(files, said.join, read_table), card.channels, {name: formula})
+    dated = with_dates(over_files(files, said.join, read_table), card.time, clock)
+    read = without_error_values(dated, card.channels, {name: formula})
     source = source_of(files, said.join, needed, clock, read)
     start, stop = recording.rows
     values = source.columns[columns[0]][start:stop]

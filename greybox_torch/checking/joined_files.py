@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, Card, read_card
 from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.gaps import Gap, gap_steps
 from greybox_torch.data.holding_out import HELD_OUT
@@ -97,7 +98,7 @@ def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Re
     formulas = card.formulas(entry)
     columns = {name: formula.columns for name, formula in formulas.items()}
     needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])
-    known = without_error_values(read, card.channels, formulas)
+    known = without_error_values(with_dates(read, card.time, clock), card.channels, formulas)
     source = source_of([data.path.parent / file for file in entry.file], entry.join, list(needed), clock, known)
     start, stop = entry.rows or (0, len(source.columns[clock]))
     alone = {name: of[0] for name, of in columns.items() if len(of) == 1}

@@ -79,11 +79,11 @@ def lone_samples(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterator[L
         joined: by recording.
     """
     for recording in data.recordings:
-        for name, signal in recording.signals.items():
-            # where a file was joined in time, its samples: in between, straight lines spread an error value over several
+        for name in recording.signals:
+            # the samples of a slower file or column: in between, straight lines spread an error value over several
             files = joined.get(recording.name)
             own = None if files is None else _of_joined(files, name)
-            values = signal if own is None else own.values
+            values = recording.measured(name) if own is None else own.values
             known = np.flatnonzero(~np.isnan(values))
             lone, distance = _lone(values[known])
             doubted = [(known[at], True) for at in far_off(values[known])]

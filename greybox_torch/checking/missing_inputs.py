@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from greybox_torch.data import DataSet
+from greybox_torch.checking.as_in_the_file import rows_are_of_the_file, rows_on_the_card
+from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import SAMPLES_LOST as LONGEST
+from greybox_torch.data.gaps import pieces_around
 
 if TYPE_CHECKING:
     from greybox_torch.model import GreyBoxModel
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
 @dataclass(frozen=True)
 class MissingInput(InASentence):
     """The longest stretch of missing samples of an input in an experiment: from sample ``first`` on, ``count`` of them, ``seconds`` long;
-    ``missing`` of its ``samples`` in all.
+    ``missing`` of its ``samples`` in all. ``write`` says what to do.
     """
 
     experiment: str
@@ -29,20 +31,20 @@ class MissingInput(InASentence):
     seconds: float
     missing: int
     samples: int
+    write: str
 
     @property
     def found(self) -> str:
         """What is there, in a sentence."""
         return (
             f'[[experiment]] "{self.experiment}", channel "{self.channel}": {self.missing} of {self.samples} samples of this input are '
-            f"missing, {self.count} of them ({self.seconds:.3g} s) from sample {self.first} on (the first is 0); the last value before "
+            f"missing, {self.count} of them ({self.seconds:.3g} s) from sample {self.first} on (the first is 0); {self._held} "
             "stands for them, which is not what drove the machine"
         )
 
     @property
-    def write(self) -> str:
-        """What to write instead."""
-        return "one experiment that ends before it and another that begins after it: rows = [first, last] in each [[experiment]]"
+    def _held(self) -> str:
+        return "the first value after" if self.first == 0 else "the last value before"
 
 
 def missing_inputs(data: DataSet, model: GreyBoxModel) -> Iterator[MissingInput]:
@@ -55,6 +57,14 @@ def missing_inputs(data: DataSet, model: GreyBoxModel) -> Iterator[MissingInput]
             if len(count) and count.max() > LONGEST:
                 k = int(np.argmax(count))
                 seconds = float(count[k]) * recording.sample_time
-                yield MissingInput(
-                    recording.name, name, int(first[k]), int(count[k]), seconds, int(gone.sum()), len(gone)
-                )
+                stretch = int(first[k]), int(count[k])
+                write = _around(data, recording, *stretch)
+                yield MissingInput(recording.name, name, *stretch, seconds, int(gone.sum()), len(gone), write)
+
+
+def _around(data: DataSet, recording: Recording, first: int, count: int) -> str:
+    """What to write to leave a stretch of samples out: the rows of the file, as far as samples are rows of it."""
+    if rows_are_of_the_file(data):
+        begin = recording.rows[0] + first
+        return pieces_around((begin, begin + count), rows_on_the_card(data, recording))
+    return "rows = [first, last] that leave it out: two experiments of the file, where there are samples before it and after it"

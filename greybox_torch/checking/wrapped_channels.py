@@ -43,7 +43,8 @@ class WrappedChannel(InASentence):
 def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
     """Of every experiment the channels that jump by a whole turn."""
     for recording in data.recordings:
-        for name, values in recording.signals.items():
+        for name in recording.signals:
+            values = recording.measured(name)
             unit = data.channels[name].unit
             known = np.flatnonzero(~np.isnan(values))
             period, jumps = turn_within(values[known], unit)

@@ -25,7 +25,7 @@ def left_out(channel: str) -> str:
 def asked_for(
     place: str,
     channels: Mapping[str, Expression],
-    clock: str | None,
+    clocks: Sequence[str],
     others: Sequence[Path],
     read: Callable[..., object],
 ) -> Iterator[None]:
@@ -34,7 +34,7 @@ def asked_for(
     Args:
         place: the card and the experiment.
         channels: by name, what each is made of.
-        clock: the column of time stamps, if there is one.
+        clocks: the column of time stamps, if there is one, and that of their dates.
         others: files of the other experiments, by ``read`` of which it is known whether one has what this one lacks.
     """
     try:
@@ -43,7 +43,7 @@ def asked_for(
         wanting = [name for name, formula in channels.items() if error.column in formula.columns]
         elsewhere = wanting and any(_has(read, file, error.column) for file in others)
         advice = f"; other experiments have it: {left_out(wanting[0])}" if elsewhere else ""
-        where = "".join(f', channel "{name}"' for name in wanting) or (", time" if error.column == clock else "")
+        where = "".join(f', channel "{name}"' for name in wanting) or (", time" if error.column in clocks else "")
         raise NoSuchColumn(f"{place}{where}: {error}{advice}", error.column) from None
     except UserError as error:
         raise UserError(f"{place}: {error}") from None

@@ -128,12 +128,13 @@ class ChannelEntry(Entry):
 
 
 class TimeEntry(Entry):
-    """The column of time stamps, and its unit."""
+    """The column of time stamps, and its unit. `date` is the column of their dates, where it has times of day alone."""
 
     column: Text
     unit: Literal["s", "ms", "us", "µs", "ns", "min", "h"] = "s"
+    date: Text | None = None
 
-    _position = field_validator("column", mode="before")(_column)
+    _position = field_validator("column", "date", mode="before")(_column)
 
     @property
     def seconds(self) -> float:

@@ -58,7 +58,8 @@ def _past_midnight(time: NDArray[np.float64], later: int) -> str:
     if not (0.0 <= after < before <= DAY and before - after > DAY / 2 and (steps > 0.0).any()):
         return ""
     return (
-        "; the time of day passes midnight here: give stamps with the date, or "
+        "; the time of day passes midnight here: give stamps with the date (of a column beside it: "
+        'time = { column = "…", date = "…" }), or '
         f"sample_time = {np.median(steps[steps > 0.0]):.6g} in the place of time, or two experiments, with the rows before this sample "
         "and from it on"
     )

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_same_length
+from greybox_torch.data.in_no_file import in_no_file
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
 
@@ -35,9 +36,7 @@ def joined_rows(
         held = {**own, **held}
     for column in columns:
         if column not in held:
-            names = ", ".join(file.name for file in files)
-            said = str(lacking[column]) if column.startswith("#") else f'{files[0]}: no column "{column}"'
-            raise NoSuchColumn(f"{said}; it is in none of {names}", column)
+            raise in_no_file(files, column, str(lacking[column]) if column.startswith("#") else "")
     _check_lengths(tables)
     return tuple(tables), held
 

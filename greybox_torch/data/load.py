@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cache
 from os import PathLike
 from pathlib import Path
@@ -17,6 +17,7 @@ from greybox_torch.data.card_constants import constants_of, told_constants
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.dataset import DataSet
+from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.file_units import check_unit_of_time, check_units, in_unit
@@ -26,6 +27,7 @@ from greybox_torch.data.over_files import over_files
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
+from greybox_torch.data.slower_columns import between_of, slower_column
 from greybox_torch.data.source import Read, Source, source_of
 from greybox_torch.data.steps import EVEN, even_step, unevenness, usual_step
 from greybox_torch.errors import UserError
@@ -71,10 +73,12 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     files = [path.parent / file for file in experiment.file]
     clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
     formulas = card.formulas(experiment)
-    needed = [*(c for formula in formulas.values() for c in formula.columns), *([clock] if clock else [])]
+    clocks = [column for column in (clock, card.time.date if card.time else None) if column]
+    needed = [*(c for formula in formulas.values() for c in formula.columns), *clocks[:1]]
     others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
-    with asked_for(place, formulas, clock, others, read):
-        known = without_error_values(over_files(files, experiment.join, read), card.channels, formulas)
+    with asked_for(place, formulas, clocks, others, read):
+        dated = with_dates(over_files(files, experiment.join, read), card.time, clock)
+        known = without_error_values(dated, card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
@@ -84,7 +88,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()
     }
-    recorded = dict(signals)
+    slow = {name: found for name, values in signals.items() if (found := slower_column(name, time, values))}
+    recorded = signals = signals | {name: found.values for name, found in slow.items()}
 
     def missing(name: str, at: float) -> str:
         near = int(np.searchsorted(time, at))
@@ -93,10 +98,9 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     done = _processed(place, card, time, sample_time, signals, missing)
     check_length(len(done.time), place)
     constants = constants_of(place, experiment, len(done.time))
-    between = _between(source, formulas, (start, stop)) if np.array_equal(done.time, time) else {}
-    slower = (
-        f"of a slower file, and as outputs counted at its own samples alone: {', '.join(between)}" if between else ""
-    )
+    own = {name: found.between for name, found in slow.items()}
+    between = between_of(source, formulas, (start, stop)) | own if np.array_equal(done.time, time) else {}
+    slower = f"slower than the rest, an output among them counts at its own samples alone: {', '.join(between)}"
     return Recording(
         name=experiment.name,
         role=experiment.role,
@@ -107,18 +111,16 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
         further=tuple(files[1:]),
         rows=(start, stop) if len(done.time) == stop - start else (0, len(done.time)),
         units={name: entry.unit for name, entry in card.channels.items()},
-        notes=(*source.notes, *done.notes, *filter(None, [slower]), *told_constants(card.channels, experiment)),
+        notes=(
+            *source.notes,
+            *done.notes,
+            *(found.note for found in slow.values()),
+            *([slower] if between else []),
+            *told_constants(card.channels, experiment),
+        ),
         between=between,
         constants=frozenset(constants),
     )
-
-
-def _between(source: Source, formulas: Mapping[str, Expression], rows: tuple[int, int]) -> dict[str, NDArray[np.bool_]]:
-    """By channel, the samples at which one of its columns lies between samples of a slower file."""
-    of = {
-        name: [source.between[c] for c in formula.columns if c in source.between] for name, formula in formulas.items()
-    }
-    return {name: np.any(columns, axis=0)[slice(*rows)] for name, columns in of.items() if columns}
 
 
 def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]:

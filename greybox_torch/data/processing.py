@@ -38,7 +38,7 @@ def at_times(times: Samples, stamps: Samples, values: Samples) -> Samples:
     return np.where(stamps[exact] == times, values[exact], found)
 
 
-_SLOWER = 1.5
+SLOWER = 1.5
 """Times as long steps from which samples of another file stand for a measurement only where they were taken."""
 
 
@@ -47,7 +47,7 @@ def between_samples(times: Samples, stamps: Samples) -> NDArray[np.bool_] | None
 
     A straight line between two samples has their noise once, not in every sample: what is judged by noise would count it as many times.
     """
-    if len(times) < 2 or len(stamps) < 2 or np.median(np.diff(stamps)) < _SLOWER * np.median(np.diff(times)):
+    if len(times) < 2 or len(stamps) < 2 or np.median(np.diff(stamps)) < SLOWER * np.median(np.diff(times)):
         return None
     after = np.clip(np.searchsorted(times, stamps), 1, len(times) - 1)
     nearest = after - (stamps - times[after - 1] < times[after] - stamps)

@@ -39,8 +39,8 @@ class Recording:
     `rows` is the half-open slice of the file `source` that the recording stands for; `source` is None where there is no file, and
     `further` are those that were joined to it. `units` are by channel, where they are known. `notes` say what was done to
     the file's samples, or what is remarkable about their time stamps. `between`, by channel, marks the samples (N,) that lie on straight
-    lines between those of a slower file: an output was not measured there. `constants` are the channels of which it is known that they
-    have one value throughout, as the card or a single number in memory says.
+    lines between those of a slower file or column: an output was not measured there. `constants` are the channels of which it is known
+    that they have one value throughout, as the card or a single number in memory says.
 
     All arrays are read-only, and no change to what they were made from reaches them.
     """

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_same_length, check_time
 from greybox_torch.data.gaps import in_gaps, lost_samples
+from greybox_torch.data.in_no_file import in_no_file
 from greybox_torch.data.joined_rows import joined_rows
 from greybox_torch.data.processing import at_times, between_samples
 from greybox_torch.data.readers.table import NoSuchColumn, Table
@@ -115,8 +116,7 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         tables.append(table)
         lacking = [column for column in lacking if column not in own]
     if lacking:
-        names = ", ".join(file.name for file in files)
-        raise NoSuchColumn(f'{files[0]}: no column "{lacking[0]}"; it is in none of {names}', lacking[0])
+        raise in_no_file(files, lacking[0])
     return Source((tables[0],), held, tuple(notes), tuple(tables[1:]), between=between)
 
 

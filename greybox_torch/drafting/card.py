@@ -82,11 +82,9 @@ def draft_card(
 
 def _clock(clock: Clock) -> list[str]:
     if clock.column is not None:
-        time = (
-            toml_text(clock.column)
-            if clock.unit == "s"
-            else f"{{ column = {toml_text(clock.column)}, unit = {toml_text(clock.unit)} }}"
-        )
+        more = f", unit = {toml_text(clock.unit)}" if clock.unit != "s" else ""
+        more += f", date = {toml_text(clock.date)}" if clock.date else ""
+        time = f"{{ column = {toml_text(clock.column)}{more} }}" if more else toml_text(clock.column)
         uneven = f"# resample = {clock.uneven}    # s: the time stamps are uneven; this makes them even"
         return [f"time = {time}    # {clock.remark}", *([uneven] if clock.uneven else [])]
     if clock.sample_time is not None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +44,8 @@ class Clock:
     """Either ``column`` (None: there is none) with its unit, or ``sample_time`` in seconds (None: not known).
 
     ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
-    ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty.
+    ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty. ``date`` is
+    the column of the dates of times of day, else empty.
     """
 
     column: str | None = None
@@ -54,10 +55,16 @@ class Clock:
     uneven: str = ""
     gap: Gap | None = None
     broken: str = ""
+    date: str = ""
 
 
 def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
+    clock = _without_date(file)
+    return replace(clock, date=file.dates.get(clock.column or "", ""))
+
+
+def _without_date(file: Recorded) -> Clock:
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
     named = [name for name in rising if name in file.stamps or named_like_a_clock(name)]
     other = [name for name in rising if is_clock(rising[name]) and _comes_first(name, file)]

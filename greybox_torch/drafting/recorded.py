@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.checks import DAY
 from greybox_torch.data.columns import columns_of
+from greybox_torch.data.dates import are_dates, are_times_of_day
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import BadCell, Table
 from greybox_torch.errors import UserError
@@ -27,7 +29,8 @@ class Recorded:
     ``left_out`` are columns that hold another number of samples than most, ``faults`` those that hold something else than numbers,
     with what was found and where: here and there, those samples are missing in ``columns``; else they are not among them. ``marks`` has by
     column such texts as may stand for missing samples, which are no faults, and ``marked_at`` where the first of them is. ``stamps`` are
-    columns of dates or times of day. ``lines`` has the line of every sample, where there are lines.
+    columns of dates or times of day. ``lines`` has the line of every sample, where there are lines. ``dates`` has, by a column of times of
+    day, the column of dates beside it, which were added to these times and is not among the columns.
     """
 
     path: Path
@@ -40,6 +43,7 @@ class Recorded:
     marked_at: Mapping[str, str] = field(default_factory=dict)
     stamps: frozenset[str] = frozenset()
     lines: Sequence[int] | None = None
+    dates: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -62,9 +66,31 @@ def recorded(path: Path) -> Recorded:
     usual = max(set(lengths), key=lambda n: (lengths.count(n), n))
     kept = {name: values for name, values in table.columns.items() if len(values) == usual}
     other = tuple(name for name in table.columns if name not in kept)
+    pair = _dates_beside_times(kept, table.stamps)
+    if pair is not None:
+        time, date = pair
+        kept = {name: values + kept[date] if name == time else values for name, values in kept.items() if name != date}
     return Recorded(
-        path, kept, table.units, listing.numbers, other, odd.faults, odd.marks, odd.marked_at, table.stamps, table.lines
+        path,
+        kept,
+        table.units,
+        listing.numbers,
+        other,
+        odd.faults,
+        odd.marks,
+        odd.marked_at,
+        table.stamps,
+        table.lines,
+        dict([pair] if pair else []),
     )
+
+
+def _dates_beside_times(columns: Mapping[str, NDArray[np.float64]], stamps: Collection[str]) -> tuple[str, str] | None:
+    """The first column of times of day, and that of dates, of a file that has them in two columns."""
+    written = {name: values for name, values in columns.items() if name in stamps}
+    dates = [name for name, values in written.items() if are_dates(values) and np.nanmin(values) >= DAY]
+    times = [name for name, values in written.items() if name not in dates and are_times_of_day(values)]
+    return (times[0], dates[0]) if times and len(dates) == 1 else None
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,8 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
 
     The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
     in all experiments. Of very many channels or experiments the figure shows the first, and says so. Gaps in the time stamps break the
-    curve; missing samples leave a gap in it and a red mark at the foot of it, and are counted beside the axes.
+    curve; samples that stand alone are dots. Missing samples leave a gap in it and a red mark at the foot of it, and are counted beside the
+    axes.
 
     Args:
         along: the label of the horizontal axis.
@@ -59,9 +60,18 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
     return figure
 
 
+def _alone(values: np.ndarray) -> np.ndarray:
+    """Which of the samples (N,) stand between two missing ones, through which no line goes."""
+    gone = np.concatenate([[True], np.isnan(values), [True]])
+    return gone[:-2] & ~gone[1:-1] & gone[2:]
+
+
 def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
     values, time = recording.signals[channel.name], since_start(recording)
     axes.plot(*broken_at_gaps(time, values), linewidth=0.7)
+    alone = _alone(values)
+    if alone.any():
+        axes.plot(time[alone], values[alone], ".", color="tab:blue", markersize=2.0)
     axes.margins(x=0)
     missing = time[np.isnan(values)]
     if missing.size:

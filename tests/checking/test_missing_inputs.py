@@ -14,6 +14,8 @@ from greybox_torch.cli import app
 from greybox_torch.data import load_dataset
 from greybox_torch.systems import load_model
 
+PIECES = "two experiments in place of this one: rows = [0, 60] and rows = [95, 600]"
+
 
 @pytest.fixture
 def card(motor_folder: Callable[..., Path]):
@@ -44,6 +46,16 @@ def test_the_longest_stretch_of_an_input_is_told(card) -> None:
     assert "38 of 600 samples of this input are missing, 35 of them (0.35 s) from sample 60 on" in gap.found
 
 
+def test_what_to_write_at_either_end(card) -> None:
+    """Seen: an experiment "that begins after it", of the last nine samples."""
+    path = card(v=[slice(0, 9), slice(592, 600)])
+    (gap,) = gaps(path)
+    assert gap.write == "rows = [9, 600]" and "the first value after stands for them" in gap.found
+    path.write_text(path.read_text().replace('name = "Steps"', 'name = "Steps"\nrows = [300, 600]', 1))
+    (gap,) = gaps(path)
+    assert (gap.count, gap.write) == (8, "rows = [300, 592]"), "seen: one that begins after the last samples"
+
+
 def test_a_few_lost_samples_and_those_of_outputs_are_nothing(card) -> None:
     few = [slice(k, k + LONGEST) for k in (0, 40, 595)]
     assert gaps(card(v=few, w=[slice(60, 120)])) == []
@@ -54,7 +66,7 @@ def test_check_and_fit_warn(card) -> None:
     data = load_dataset(path)
     assert data.model is not None
     (finding,) = [f for f in check(data.model, data).findings if "samples of this input" in f.found]
-    assert finding.level == "warning" and finding.file == path and "rows = [first, last]" in finding.write
+    assert finding.level == "warning" and finding.file == path and finding.write == PIECES
     told = CliRunner().invoke(app, ["simulate", str(path), "--out", str(path.parent / "out")])
     assert told.exit_code == 0, told.output
     assert (

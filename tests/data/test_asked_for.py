@@ -39,6 +39,18 @@ def test_the_column_of_the_only_experiment(bench: Path, edit: Edit) -> None:
     assert told(card).endswith('no column "Y" (did you mean "y"?); found t, u, y')
 
 
+@pytest.mark.parametrize("join", ["time", "rows"])
+def test_a_column_that_none_of_several_files_has(bench: Path, edit: Edit, join: str) -> None:
+    """Seen: neither the nearest name nor a list, which a single file has."""
+    card = bench / "dataset.toml"
+    edit(card, "sample_time = 0.01", 'time = "t"')
+    (bench / "wind.csv").write_text("t,wind speed\n" + "".join(f"{0.01 * k:.2f},1\n" for k in range(40)))
+    edit(card, 'file = "steps.csv"', f'file = ["steps.csv", "wind.csv"]\njoin = "{join}"')
+    edit(card, "speed = {", 'wind = { column = "wind sped" }\nspeed = {')
+    there = "it is in none of steps.csv, wind.csv; found t, u, y in steps.csv; t, wind speed in wind.csv"
+    assert told(card).endswith(f'no column "wind sped" (did you mean "wind speed"?); {there}')
+
+
 def test_the_column_of_time_stamps(bench: Path, edit: Edit) -> None:
     card = bench / "dataset.toml"
     edit(card, "sample_time = 0.01", 'time = "tt"')

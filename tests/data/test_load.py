@@ -126,9 +126,9 @@ def test_a_time_of_day_that_passes_midnight(bench: Path, before: int) -> None:
     with pytest.raises(UserError) as error:
         load_dataset(bench / "dataset.toml")
     assert '[[experiment]] "Steps": ' in str(error.value) and f"line {2 + before}" in str(error.value)
-    assert "passes midnight here: give stamps with the date, or sample_time = 1 in the place of time" in str(
-        error.value
-    )
+    said = str(error.value)
+    assert 'passes midnight here: give stamps with the date (of a column beside it: time = { column = "…", date' in said
+    assert "or sample_time = 1 in the place of time" in said
 
 
 def test_infinite_value(bench: Path, edit: Edit) -> None:

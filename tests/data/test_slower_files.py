@@ -67,7 +67,7 @@ def test_an_output_counts_at_its_own_samples_and_an_input_everywhere(tmp_path: P
     first, held_out = data.recordings
     counted = ~np.isnan(np.concatenate([first.measured("y"), held_out.measured("y")]))
     assert counted.sum() == 299 and not np.isnan(first.signals["y"][1:]).any()
-    assert first.notes[-1] == "of a slower file, and as outputs counted at its own samples alone: y"
+    assert first.notes[-1] == "slower than the rest, an output among them counts at its own samples alone: y"
     records = make_records(data, Cart(), data.recordings)
     np.testing.assert_array_equal(np.isnan(records.y[0]), ~counted)
     assert not np.isnan(records.u).any()

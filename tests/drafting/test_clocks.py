@@ -107,3 +107,16 @@ def test_a_column_of_dates_is_kept_where_a_line_is_to_be_mended(tmp_path: Path, 
     (told,) = card.open
     assert told.startswith("time: ") and "line 62" in told and told.endswith("to be mended in run.csv")
     assert card.text.splitlines()[1].startswith('time = "Time"    # column "Time"')
+
+
+def test_dates_in_a_column_of_their_own(tmp_path: Path) -> None:
+    """Seen: "Uhrzeit" does not rise everywhere, and "Datum" left out, of a recording over midnight."""
+    at = [f"0{1 + (k >= 5)}.03.2026;{'23:59:' if k < 5 else '00:00:'}{(55 + k) % 60:02},000" for k in range(40)]
+    lines = [f"{stamp};{k % 3};{k % 7}" for k, stamp in enumerate(at)]
+    (tmp_path / "nacht.csv").write_text("Datum;Uhrzeit;u;y\n" + "\n".join(lines) + "\n")
+    card = gt.card(tmp_path / "nacht.csv")
+    assert 'time = { column = "Uhrzeit", date = "Datum" }    # read in s; steps of 1 s' in card.text
+    assert "Datum = " not in card.text and not card.open
+    card.save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert data.recordings[0].seconds == pytest.approx(30.0)

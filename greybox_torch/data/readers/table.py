@@ -64,14 +64,15 @@ def require(path: Path, columns: Iterable[str], found: Collection[str]) -> None:
     for column in columns:
         if column not in known:
             listed = list(found)
-            names = (
-                ", ".join(_shown(name) for name in listed[:40])
-                + (f", … ({len(listed)} in all)" if len(listed) > 40 else "")
-                or "none"
-            )
             raise NoSuchColumn(
-                f'{path}: no column "{column}"{did_you_mean(column, listed[:2000])}; found {names}', column
+                f'{path}: no column "{column}"{did_you_mean(column, listed[:2000])}; found {named(listed)}', column
             )
+
+
+def named(columns: Sequence[str]) -> str:
+    """The columns of a file, for a message; of very many the first."""
+    more = f", … ({len(columns)} in all)" if len(columns) > 40 else ""
+    return ", ".join(_shown(name) for name in columns[:40]) + more or "none"
 
 
 def _shown(name: str) -> str:

@@ -10,16 +10,17 @@ from greybox_torch.data.checks import DAY
 _EPOCH = date(1970, 1, 1).toordinal()
 _STAMP = re.compile(
     r"""(?:(?P<date>(?P<y>\d{4})[-/](?P<m>\d{1,2})[-/](?P<d>\d{1,2}) | (?P<d2>\d{1,2})\.(?P<m2>\d{1,2})\.(?P<y2>\d{4})
-            | (?P<either>\d{1,2}/\d{1,2}/\d{4}))[T ]\ ?)?
-        (?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:[.,]\d{1,12})?)
+            | (?P<either>\d{1,2}/\d{1,2}/\d{4}))(?:[T ]\ ?(?=\d)|$))?
+        (?:(?P<hour>\d{1,2}):(?P<minute>\d{2}):(?P<second>\d{2}(?:[.,]\d{1,12})?)
         (?:\ ?(?P<half>[AaPp])[Mm])?
-        (?:\ ?(?P<zone>Z|[+-]\d{2}:?\d{2}))?""",
+        (?:\ ?(?P<zone>Z|[+-]\d{2}:?\d{2}))?)?""",
     re.VERBOSE | re.ASCII,
 )
 
 
 class TimeStamps:
-    """Turns the time stamps of one column into seconds: since 1970 where they have dates, else since midnight.
+    """Turns the time stamps of one column into seconds: since 1970 where they have dates, else since midnight. A date
+    alone is its midnight.
 
     Dates such as 03/04/2026 are of March or of April, who knows: they count as long as they are the same one.
     """
@@ -37,8 +38,10 @@ class TimeStamps:
         microsecond since 1970. Raises ValueError as :meth:`seconds` does.
         """
         found = _STAMP.fullmatch(text)
-        if found is None:
+        if found is None or not text:
             raise ValueError("expected a time stamp like 2026-03-01T12:00:00.010")
+        if found["hour"] is None:
+            return self._days(found) * DAY, 0.0
         hour, minute, second = int(found["hour"]), int(found["minute"]), float(found["second"].replace(",", "."))
         if found["half"] is not None:
             hour = hour % 12 + 12 * (found["half"] in "Pp")
@@ -59,7 +62,7 @@ class TimeStamps:
 
 
 def is_time_stamp(text: str) -> bool:
-    """Whether a text is a date with a time of day, or a time of day."""
+    """Whether a text is a date, a time of day, or both."""
     try:
         TimeStamps().seconds(text)
     except ValueError:
