@@ -8,7 +8,7 @@ import pytest
 
 from greybox_torch.diagnosis.select import search as module
 from greybox_torch.diagnosis.select.search import search
-from greybox_torch.diagnosis.settings import SearchBudget
+from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag, ViscousFriction
@@ -42,6 +42,6 @@ def test_what_is_led_back_is_not_chosen_again(monkeypatch, stub, ends, revisions
     monkeypatch.setattr(module, "take_effects", stage(lambda state: there(to_come.pop(0))))
     for name in ("drop_superfluous", "with_memory", "without_idle_bumps"):
         monkeypatch.setattr(module, name, stage(lambda state: state))
-    found = result_of(search(stub(budget=SearchBudget()), there(DRY)))
+    found = result_of(search(stub(budget=SearchBudget(), settings=DiagnosisSettings()), there(DRY)))
     assert len(asked) == revisions
     assert found.effects == (ends[revisions - 1],)
