@@ -41,10 +41,10 @@ def with_dates(read: Read, time: TimeEntry | None, clock: str | None) -> Read:
         return read
 
     def reading(path: Path, columns: Sequence[str], marks: Sequence[tuple[str, str]] = ()) -> Table:
+        more = (marks,) if marks else ()
         if clock not in columns:
-            return read(path, columns, marks) if marks else read(path, columns)
-        wanted = tuple(dict.fromkeys((*columns, date)))
-        table = read(path, wanted, marks) if marks else read(path, wanted)
+            return read(path, columns, *more)
+        table = read(path, tuple(dict.fromkeys((*columns, date))), *more)
         days, times = table.columns[date], table.columns[clock]
         if not are_dates(days):
             raise UserError(f'{path}, column "{date}": is no column of dates alone, such as 2026-03-01 or 01.03.2026')

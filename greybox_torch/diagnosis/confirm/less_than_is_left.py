@@ -38,5 +38,5 @@ def less_than_is_left(
 
 def _little_beside_a_larger_one(sizes: Mapping[str, float], share: float, settings: DiagnosisSettings) -> set[str]:
     """The effects that may be what a larger one lacks, where free runs leave a ``share`` of the mismatch."""
-    least = min(settings.least_times_what_is_left * share, settings.least_size_beside_larger)
-    return {prefix for prefix, size in sizes.items() if size < min(least, max(sizes.values()))}
+    least = min(settings.least_times_what_is_left * share, settings.least_size_beside_larger, max(sizes.values()))
+    return {prefix for prefix, size in sizes.items() if size < least}
