@@ -14,9 +14,10 @@ from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_run
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.friction import CoulombAsymmetry
+from greybox_torch.mechanisms.friction import CoulombAsymmetry, QuadraticDrag
 
 FRICTION, BIAS = Attachment("motor", CoulombAsymmetry()), Attachment("arm", ConstantBias())
+DRAG = Attachment("arm", QuadraticDrag())
 
 
 @dataclass(frozen=True)
@@ -28,6 +29,14 @@ class FreeRuns:
     unstable: frozenset[str] = frozenset()
     problem: Any = None
     begun: Any = None
+    in_each: tuple[float, ...] = (0.1, 0.4)  # the share left in each experiment that judges
+
+    @property
+    def judges(self) -> set[str]:
+        return {str(i) for i in range(len(self.in_each))}
+
+    def mismatch(self, effects: bool, among: set[str]) -> float:
+        return self.in_each[int(next(iter(among)))] if effects else 1.0
 
     def left(self, effects: bool) -> tuple[float, float, str]:
         return (self.share, 2.0, "sweep") if effects else (1.0, self.times, "sweep")
@@ -39,9 +48,17 @@ def shown(monkeypatch):
     study: Any = SimpleNamespace(settings=DiagnosisSettings(), surroundings={"motor": None, "arm": None}, budget=None)
     state: Any = SimpleNamespace(effects=(FRICTION, BIAS), current=None)
 
-    def ask(runs: FreeRuns, friction: float, bias: float, everywhere: bool = True, size: float = 0.12) -> set[str]:
+    def ask(
+        runs: FreeRuns,
+        friction: float,
+        bias: float,
+        everywhere: bool = True,
+        size: float = 0.12,
+        drag: float | None = None,
+    ) -> set[str]:
+        state.effects = (FRICTION, BIAS) if drag is None else (DRAG,)
         monkeypatch.setattr(module, "constant_effect", lambda *_: everywhere)
-        away = {FRICTION.prefix: friction, BIAS.prefix: bias}
+        away = {FRICTION.prefix: friction, BIAS.prefix: bias, DRAG.prefix: drag}
         gains: Any = {n: SimpleNamespace(errors_away=a, size=size) for n, a in away.items()}
         return shown_by_free_runs(study, state, gains, runs)  # type: ignore[arg-type]
 
@@ -66,6 +83,27 @@ def test_what_free_runs_need_and_windows_bear_out_is_shown(shown) -> None:
 )
 def test_not_what_disturbances_make_nor_what_free_runs_do_not_need(shown, runs) -> None:
     assert shown(runs, 3.7, 5.0) == set()
+
+
+def test_a_law_that_follows_the_motion_is_no_disturbance(shown) -> None:
+    """Seen: a drag, 5.4 times the noise in free runs and 1.1 with it; friction, 4.3 and 1.8, 2.8 standard errors by windows."""
+    assert shown(FreeRuns(5.4, 0.01, in_each=(0.1, 0.7)), 0.0, 0.0, drag=4.2) == {DRAG.prefix}
+    assert shown(FreeRuns(4.3, 0.14), 0.0, 0.0, everywhere=False, drag=2.8) == {DRAG.prefix}
+
+
+@pytest.mark.parametrize(
+    ("runs", "away"),
+    [
+        (FreeRuns(2.9, 0.01), 5.0),
+        (FreeRuns(5.4, 0.3), 5.0),
+        (FreeRuns(5.4, 0.1), 0.9),
+        (FreeRuns(5.4, 0.1, in_each=(0.1, 0.6)), 2.8),
+        (FreeRuns(5.4, 0.1, in_each=(0.1,)), 2.8),
+    ],
+    ids=["hardly more than noise", "much is left", "not by windows", "not in every experiment", "in a single one"],
+)
+def test_a_law_that_free_runs_do_not_need_in_each_experiment_has_to_be_beyond_chance(shown, runs, away) -> None:
+    assert shown(runs, 0.0, 0.0, drag=away) == set()
 
 
 def test_not_what_is_another_one_in_every_experiment_nor_chance(shown) -> None:
