@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.common_gain import with_common_gain
+from greybox_torch.diagnosis.confirm.hardly_followed import hardly_followed
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
@@ -172,7 +173,8 @@ def _as_found(
     left = None if effects else error_without_a_name(study, state, found.others, judged)
     chosen_by = times_noise(study.problem, state.plain, study.settings)
     tried = found.complete and not explained
-    unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings) else None
+    lost = hardly_followed(judged)
+    unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings, lost) else None
     unstable = judged.unstable if effects else frozenset[str]()
     looked = not study.beliefs.exclude_all(model)
     answered = found.complete and (looked or unexplained is not None)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.confirm.hardly_followed import hardly_followed
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.same_everywhere import same_everywhere
@@ -28,7 +29,9 @@ Judged = tuple[SearchState, Mapping[str, Gain], Judgement]
 def longer_windows(study: Study, state: SearchState, judged: Judgement, searched: Hypothesis) -> SearchBudget | None:
     """The budget with windows twice as long beside the others.
 
-    None where free runs leave little, or windows show it, or none are longer. Little is what disturbances may leave and nobody sees.
+    None where free runs leave little, or windows show it, or none are longer. Little is what disturbances may leave and nobody sees. Where
+    nothing was found and free runs hardly follow, windows of half the longest record, whatever shorter ones show: short records have no
+    windows in which anything slow shows.
 
     Args:
         searched: what the search came to, before held-out experiments judged: where it leaves noise alone over windows, free runs may have
@@ -40,18 +43,20 @@ def longer_windows(study: Study, state: SearchState, judged: Judgement, searched
         return None
     if times < settings.far_above_disturbances and judged.mismatch_share < settings.obvious_mismatch:
         return None
+    lost = not state.effects and hardly_followed(judged)
     by_windows = (times_noise(study.problem, h, settings) for h in (state.current, searched))
-    if min(by_windows) > settings.above_noise:
+    if not lost and min(by_windows) > settings.above_noise:
         return None
     lengths = window_lengths(study.problem, budget)
     factors = budget.window_factors[: len(lengths)]  # short records have no windows of the others
-    longer = replace(budget, window_factors=(*factors, 2 * factors[-1]))
+    last = int(study.problem.records.lengths.max()) // 2 // lengths[0] if lost else 2 * factors[-1]
+    longer = replace(budget, window_factors=(*factors, last))
     return longer if len(window_lengths(study.problem, longer)) > len(lengths) else None
 
 
 def stands(study: Study, before: Judged, after: Judged) -> bool:
     """Whether what longer windows found is a finding: it explains the free runs, held-out windows bear it out beyond chance, and what is
-    constant is the same in every experiment.
+    constant is the same in every experiment. Less is asked where free runs hardly follow without it.
 
     Args:
         study: of ``after``.
@@ -59,8 +64,11 @@ def stands(study: Study, before: Judged, after: Judged) -> bool:
     state, gains, judged = after
     new = [e for e in state.effects if e.prefix not in before[0].prefixes]
     settings = study.settings
-    sure = all(gains[e.prefix].errors_away > settings.held_out_beyond_chance for e in new if e.prefix in gains)
-    explained = bool(state.effects) and sure and explains_free_runs(before[2], judged, settings)
+    lost = not before[0].effects and hardly_followed(before[2])
+    least = settings.least_held_out if lost else settings.held_out_beyond_chance
+    most = settings.most_of_the_mismatch if lost else settings.slow_share
+    sure = all(gains[e.prefix].errors_away > least for e in new if e.prefix in gains)
+    explained = bool(state.effects) and sure and explains_free_runs(before[2], judged, settings, most)
     return explained and all(constant_effect(study, state, judged, e) for e in new)
 
 
@@ -84,8 +92,8 @@ def _another_offset_in_each(study: Study, state: SearchState, effect: Attachment
     return periods(order, study.surroundings[effect.port]) < study.settings.least_periods
 
 
-def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings) -> bool:
-    """Whether the effects of ``after`` leave so little of what ``before`` leaves of free runs that most of it is theirs.
+def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisSettings, most: float) -> bool:
+    """Whether the effects of ``after`` leave at ``most`` that share of what ``before`` leaves of free runs, so that most of it is theirs.
 
     By experiments that had no part in choosing either: those that judge ``after``, which may have taken one more to choose with. Where they
     show next to nothing of what is missing (a stop that is never reached there), by the ones that were taken. What the model as it stands
@@ -95,7 +103,7 @@ def explains_free_runs(before: Judgement, after: Judgement, settings: DiagnosisS
     if taken and before.mismatch(True, counting) < settings.least_size * before.mismatch(True, taken):
         counting = taken
     least = min(before.mismatch(True, counting), after.mismatch(False, counting))
-    return after.mismatch(True, counting) <= settings.slow_share * least
+    return after.mismatch(True, counting) <= most * least
 
 
 def sentence(before: Judgement, state: SearchState, searched: Hypothesis, longer: SearchState) -> str:

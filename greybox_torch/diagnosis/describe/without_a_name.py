@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from greybox_torch.diagnosis.confirm.hardly_followed import hardly_followed
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
@@ -28,26 +29,33 @@ def error_without_a_name(study: Study, state: SearchState, others: HeldOut | Non
 
     By windows of any experiment and by free runs: where either shows hardly more than noise, nothing says that anything is missing. Nor
     where the error is less than simulations of one machine differ by. Where the recordings show no more than an upper bound of the noise,
-    that bound is counted only against errors that anybody sees.
+    that bound is counted only against errors that anybody sees. Where free runs hardly follow, windows need not show much.
     """
     settings = study.settings
     held_out = 0.0 if others is None else largest_share(others.fits(state.plain), settings)
     shares = (max(mismatch_share(state.plain, settings), held_out), judged.mismatch_share)
     if max(shares) < least_mismatch(study):
         return None
-    plain_to_see = min(shares) > settings.obvious_mismatch
+    lost = hardly_followed(judged)
+    plain_to_see = lost or min(shares) > settings.obvious_mismatch
     errors = []
     if plain_to_see or floor_known(study.problem, settings):
         errors.append(times_noise(study.problem, state.plain, settings))
     if others is not None and (plain_to_see or floor_known(others.problem, settings)):
         errors += list(others.times_noise(state.plain))
-    by_windows = max((e for e in errors if settings.far_above_noise < e < np.inf), default=0.0)
+    above = settings.above_noise if lost else settings.far_above_noise
+    by_windows = max((e for e in errors if above < e < np.inf), default=0.0)
     least = min(by_windows, float(np.nanmax(judged.times_noise, initial=0.0)))
-    return least if least > settings.far_above_noise else None
+    return least if least > above else None
 
 
 def is_missing(
-    error: float | None, chosen_by: float, detected: Sequence[Detection], tried: bool, settings: DiagnosisSettings
+    error: float | None,
+    chosen_by: float,
+    detected: Sequence[Detection],
+    tried: bool,
+    settings: DiagnosisSettings,
+    lost: bool = False,
 ) -> bool:
     """Whether an error of so many times the noise, that nothing explains, says that something is missing.
 
@@ -59,9 +67,10 @@ def is_missing(
         error: from :func:`error_without_a_name`.
         chosen_by: how many times the noise it is on the experiments to choose with, over windows.
         tried: whether the search ended by itself, and nothing explained the error.
+        lost: whether free runs hardly follow the validation experiments, see :func:`hardly_followed`.
     """
     if error is None:
         return False
     repeats = any(d.plain.past.beyond and d.plain.past.value >= settings.least_of_error_repeats for d in detected)
     looked_at = tried and error < settings.most_error_elsewhere * chosen_by
-    return not looked_at or repeats or error > settings.far_above_disturbances
+    return lost or not looked_at or repeats or error > settings.far_above_disturbances

@@ -47,6 +47,13 @@ class ConfirmationSettings:
         unit="share of the outputs' spread (root mean square)",
         chosen_by="a simulated curve that lies visibly beside the measured one",
     )
+    least_fit_of_free_runs: float = number(
+        50.0,
+        "Mean fit of the plain model's free runs on the validation experiments below which something is missing, if their error is far "
+        "above what disturbances leave and windows show more than noise.",
+        unit="%",
+        chosen_by="1500 verdicts: complete machines that drift were at 72 and more",
+    )
     least_size: float = share(
         0.02,
         "Size from which an effect is a finding: the part of the plain model's held-out mismatch that leaving it out brings back. "

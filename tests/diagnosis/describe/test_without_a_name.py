@@ -89,6 +89,36 @@ def test_what_one_validation_experiment_shows_over_windows_is_missing(
     )
     judged: Any = stub(mismatch_share=0.9, times_noise=times)
     monkeypatch.setattr(without_a_name, "floor_known", lambda problem, settings: False)
+    monkeypatch.setattr(without_a_name, "hardly_followed", lambda judged: False)
     error = error_without_a_name(search.study, state, others, judged)
     assert error == (500.0 if shown else None)
     assert is_missing(error, 1.0, [], True, SETTINGS) is shown
+
+
+@pytest.mark.parametrize(
+    ("times", "fit", "missing"), [(150.0, 26.0, True), (150.0, 72.0, False), (5.0, 26.0, False)], ids=str
+)
+def test_what_free_runs_hardly_follow_lacks_something(dead_zone_search, stub, monkeypatch, times, fit, missing) -> None:
+    """Seen: a crane's trolley without its friction, 150 times the noise and a fit of 26 %, 1.9 times over windows: "nothing is missing".
+    A complete arm that drifts is at 72 %."""
+    search = dead_zone_search
+    by_windows = np.array([1.9])
+    others: Any = stub(
+        fits=lambda hypothesis: (), times_noise=lambda hypothesis: by_windows, problem=search.study.problem
+    )
+    monkeypatch.setattr(without_a_name, "largest_share", lambda fits, settings: 0.01)
+    monkeypatch.setattr(without_a_name, "mismatch_share", lambda plain, settings: 0.01)
+    monkeypatch.setattr(without_a_name, "times_noise", lambda problem, plain, settings: 1.8)
+    monkeypatch.setattr(without_a_name, "floor_known", lambda problem, settings: False)
+    scores = (stub(experiment="run 2", fit=fit),)
+    judged: Any = stub(
+        mismatch_share=0.13,
+        times_noise=np.array([times]),
+        settings=SETTINGS,
+        refit=None,
+        judging=lambda c: stub(scores=scores),
+    )
+    error = error_without_a_name(search.study, stub(plain=search.plain), others, judged)
+    lost = without_a_name.hardly_followed(judged)
+    assert lost is missing and is_missing(error, 1.8, [], True, SETTINGS, lost) is missing
+    assert error == (1.9 if missing else None)
