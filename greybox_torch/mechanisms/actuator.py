@@ -13,7 +13,11 @@ from greybox_torch.mechanisms.lag import Lag
 from greybox_torch.mechanisms.linear_law import LinearLaw, Of, Per
 from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Probe, Surroundings
 from greybox_torch.mechanisms.soft_limit import log_of_limited
+from greybox_torch.mechanisms.surroundings import Range
 from greybox_torch.model import Parameter, Signals
+
+PEAKS = 8.0
+"""How many times its root mean square an input is at most, but for peaks that say nothing of where it usually is."""
 
 
 class InputLag(Lag):
@@ -143,9 +147,9 @@ class TorqueSaturation(ByDirection):
         return f"{self.described()}{differs if self.by_direction else ''}{falls if self.limited_power else ''}"
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
-        reach = around.ranges["input"].reach
+        reach, usual = around.ranges["input"].reach, _usual(around.ranges["input"])
         return [
-            Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * reach, upper=reach, description="limit"),
+            Parameter("limit", 0.8 * reach, around.force_unit, lower=0.02 * usual, upper=reach, description="limit"),
             Parameter("softness", 0.0, "", lower=0.0, upper=1.0, description="0: a clamp, 0.5: a gradual limit"),
             *self.asymmetry("the limits"),
             *([_base_speed(around)] if self.limited_power else []),
@@ -159,7 +163,8 @@ class TorqueSaturation(ByDirection):
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         spread = around.ranges["input"]
-        hard = [factor * spread.rms for factor in (1.0, 1.5, 2.0, 2.7)]
+        below = (0.03, 0.1, 0.3) if _usual(spread) < spread.reach else ()
+        hard = [factor * spread.rms for factor in (*below, 1.0, 1.5, 2.0, 2.7)]
         soft = [factor * spread.rms for factor in (1.5, 3.0)]
         own = {"asymmetry": 0.0} if self.by_direction else {}
         own |= {"base_speed": _base_speed(around).value} if self.limited_power else {}
@@ -197,3 +202,11 @@ def _base_speed(around: Surroundings) -> Parameter:
     return Parameter(
         "base_speed", 0.5 * reach, around.units.get("speed", ""), lower=0.02 * reach, upper=reach, description=told
     )
+
+
+def _usual(spread: Range) -> float:
+    """The largest magnitude of an input, or some times its root mean square where that is far less, as of a controller's output that peaks.
+
+    Seen: a crane's current, logged as its controller asked for it: 3032 A once, 180 A root mean square, and 10 A of the drive.
+    """
+    return min(spread.reach, PEAKS * spread.rms)

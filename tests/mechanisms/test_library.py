@@ -185,3 +185,15 @@ def test_is_finite_where_a_signal_never_moved(mechanism: Mechanism, around: Surr
     for p in mechanism.parameters(still):
         assert np.isfinite(p.value)
     mechanism.probes(still)
+
+
+@pytest.mark.parametrize(
+    ("peak", "least", "lowest"), [(400.0, 8.0, 180.0), (3032.0, 28.8, 5.4)], ids=["usual", "peaks"]
+)
+def test_a_limit_is_looked_for_where_an_input_usually_is(peak: float, least: float, lowest: float) -> None:
+    """Seen: a controller's output, 3032 A once and 180 A root mean square, of which the drive gave 10 A."""
+    around = Surroundings({"input": Range(-peak, peak, 180.0)}, {}, "A", 0.01)
+    law = TorqueSaturation()
+    limit = law.parameters(around)[0]
+    assert limit.lower == pytest.approx(least) and limit.upper == peak
+    assert min(probe.values["limit"] for probe in law.probes(around)) == pytest.approx(lowest)
