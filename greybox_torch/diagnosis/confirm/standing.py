@@ -30,8 +30,14 @@ from greybox_torch.model import GreyBoxModel
 
 BY_TIMING = "a shift of a small part of a sampling interval, by which the time stamps of input and outputs may differ"
 BY_NOISE_OF_SENSOR = "hardly more than the sensor's noise"
-OF_LITTLE = "without it the model leaves little more than noise, and of that sensors, converters and wear leave parts that any law takes up"
-WITHIN_TOLERANCE = "without it the model leaves little more than noise, and no model is exact to so small a shift in time, gain or friction"
+OF_LITTLE = (
+    "the model as it stands leaves little more than noise over windows, and of that sensors, converters and wear make parts that any law "
+    "takes up"
+)
+WITHIN_TOLERANCE = (
+    "the model as it stands leaves little more than noise over windows, and none is exact to so small a shift in time, so small an error "
+    "of a gain or a bend of its own friction"
+)
 NOT_BORNE_OUT = "little, and the experiments that had no part in choosing it do not bear it out beyond chance"
 OF_MUCH = "most of the mismatch is left with all that was found, and any law takes up a part of that"
 """Why effects are refinements; another reason is ``SO_LITTLE``."""
