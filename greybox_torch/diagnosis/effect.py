@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -147,6 +147,8 @@ class Effect:
 
     why_small: str = SO_LITTLE
     """Of a refinement: why it is no finding, a clause."""
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    """What its parameters are, by name, in words."""
 
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"

@@ -171,8 +171,8 @@ def ceiling_sentence(effect: Effect) -> str:
     """How near a named effect comes to what any law of its kind could explain."""
     share = 100 * (effect.ceiling or 0.0)
     return (
-        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
-        "of the mean squared error, of the best free curve that was fitted in its place."
+        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: what the best free curve that was fitted in its "
+        "place gains (each gain as the logarithm of the factor by which the mean squared error falls)."
     )
 
 

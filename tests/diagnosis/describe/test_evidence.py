@@ -94,7 +94,7 @@ def test_a_curve_is_its_own_ceiling(stub) -> None:
 
 def test_ceiling_in_words(stub) -> None:
     told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
-    assert told.startswith("Coulomb friction at motor reaches 88 % of the ceiling: the gain")
+    assert told.startswith("Coulomb friction at motor reaches 88 % of the ceiling: what the best free curve")
 
 
 def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
