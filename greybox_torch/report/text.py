@@ -88,7 +88,7 @@ def unit(text: str) -> str:
     """A unit as it is printed: `N m/(rad/s)^2` becomes N·m/(rad/s)², and "1", that of plain numbers, nothing."""
     if text == "1":
         return ""
-    raised = re.sub(r"\^(-?\d+)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
+    raised = re.sub(r"\^(-?\d+)(?!\d*\.\d)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
     return re.sub(r"\s+", "·", raised.strip())
 
 

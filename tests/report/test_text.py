@@ -83,6 +83,7 @@ def test_negative_numbers_of_a_sentence_have_a_minus() -> None:
 def test_units_and_names() -> None:
     assert text.unit("N m/(rad/s)^2") == "N·m/(rad/s)²"
     assert text.unit("kg m^-1") == "kg·m⁻¹"
+    assert text.unit("m^3/s/V/Pa^0.5") == "m³/s/V/Pa^0.5", "seen: Pa⁰.5"
     assert text.with_unit("3", "") == "3"
     assert text.axis("motor_speed", "rad/s") == "motor speed [rad/s]"
     assert text.axis("level", "") == "level"
