@@ -13,6 +13,7 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.comparison import Comparison, compare
+from greybox_torch.estimate.divergence import FAR, diverges_from
 from greybox_torch.estimate.overflow import NO_NUMBER, Overflow, avoidance, overflows, suggestions
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.residuals import Residuals, residuals_of
@@ -78,6 +79,25 @@ class Evaluation:
     def simulated(self) -> dict[str, np.ndarray]:
         """The simulated outputs (N, n_y), by experiment."""
         return self.comparison.by_experiment
+
+    @cached_property
+    def diverging(self) -> tuple[str, ...]:
+        """A sentence for each experiment, of very many the first few, whose simulation ends far from what was measured."""
+        told = []
+        for recording in self.data.recordings:
+            if recording.name in self.lost:
+                continue
+            since = recording.time - recording.time[0]
+            for k, output in enumerate(self.problem.model.outputs):
+                begin = diverges_from(recording.signals[output.name], self.simulated[recording.name][:, k])
+                if begin is not None:
+                    when = f"from {since[begin]:.3g} s after the start on {output.name} is more than {FAR:.0f} times its measured range off"
+                    told.append(
+                        f"the simulation of '{recording.name}' diverges, so that fits say nothing: {when}. The model is unstable with "
+                        "these values; check the signs in its equations and on the card"
+                    )
+                    break
+        return tuple(told[:MOST_NAMED])
 
     @cached_property
     def residuals(self) -> tuple[Residuals, ...]:

@@ -79,3 +79,16 @@ def test_which_model(motor_folder: Make, edit: Callable[[Path, str, str], None])
     assert isinstance(given, Evaluation)
     assert given.values["J"] == 0.03
     assert evaluate(load_dataset(card), saved(folder), model=load_model(f"{folder}/my_motor.py:Motor")).values == TRUE
+
+
+def test_a_simulation_that_diverges_is_told_with_its_time(motor_folder: Make) -> None:
+    """Seen: a fit of -2e102 %, and "the motion is fast for the sample time"."""
+    folder = motor_folder()
+    data = load_dataset(folder / "dataset.toml")
+    assert evaluate(data, saved(folder)).diverging == ()
+    (code := folder / "my_motor.py").write_text(code.read_text().replace("- p.b * x.speed", "+ 10.0 * p.b * x.speed"))
+    lines = evaluate(data, saved(folder)).diverging
+    assert len(lines) == 3 and "the simulation of 'Steps' diverges, so that fits say nothing: from" in lines[0]
+    assert (
+        "speed is more than 100 times its measured range off" in lines[0] and "the signs in its equations" in lines[0]
+    )

@@ -89,8 +89,9 @@ class ComparisonResult(Result):
         return {name: run.comparison.scores for name, run in self.runs.items()}
 
     def _overflows(self) -> list[str]:
-        """Of every model whose simulation overflows where that is, and what avoids it."""
-        return [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
+        """Of every model whose simulation overflows or diverges where that is, and what avoids it."""
+        overflows = [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
+        return [*overflows, *(f"{name}: {line}" for name, run in self.runs.items() for line in run.diverging)]
 
 
 @names_checked

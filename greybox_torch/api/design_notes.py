@@ -65,13 +65,16 @@ def recorded_as_limits(found: DesignResult) -> Iterator[str]:
 def _beginning(found: DesignResult) -> Iterator[str]:
     """How it begins; where that is in motion, how to ask for a start at rest."""
     units = {s.name: s.unit for s in found.hypotheses[0].states}
-    moved = [
-        in_unit(f"{name} = {value:.3g}", units.get(name, ""))
+    moved = {
+        name: in_unit(f"{name} = {value:.3g}", units.get(name, ""))
         for name, value in found.start.items()
         if name not in found.resting
-    ]
+    }
     rest = [f"{listed(found.resting)} at rest"] if found.resting else []
-    began = ", ".join([*rest, *moved])
+    shown = [told for name, told in moved.items() if name in found.data.channels or name in found.limits.start]
+    hidden = [told for told in moved.values() if told not in shown]
+    no_sensor = [f"by the estimate {listed(hidden)}, which no sensor shows"] if hidden else []
+    began = ", ".join([*rest, *shown, *no_sensor])
     if found.limits.start:
         yield f"Begin with {began}: {', '.join(found.limits.start)} as asked for, all else as {found.begins_like} began."
     else:

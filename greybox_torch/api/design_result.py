@@ -29,6 +29,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "greybox-design/1"
+SPOKEN = {"reversals": "a triangle wave"}
+"""Kinds of signals whose name says more than is so of every one: around a large value it turns back, and never changes its sign."""
+
 HARDLY_ANY = 0.01
 """Part of a recording below which its length is not told: evidence grows with time on the whole, not period by period."""
 
@@ -215,7 +218,7 @@ class DesignResult(Result):
     def _kinds(self) -> dict[str, str]:
         """The kind of signal by input, of those that move."""
         kinds = {name: e.kind for name, e in zip(self.inputs, self.excitations, strict=True)}
-        return {name: kinds[name] for name in self.limits.designed}
+        return {name: SPOKEN.get(kinds[name], kinds[name]) for name in self.limits.designed}
 
     @property
     def as_set_points(self) -> str:

@@ -89,10 +89,10 @@ class SimulationResult(Result):
 
     @cached_property
     def warnings(self) -> list[str]:
-        """Experiments whose simulation overflows, and outputs that move opposite to what was measured, in every experiment: a sign is wrong
-        on the card or in the model.
+        """Experiments whose simulation overflows or diverges, and outputs that move opposite to what was measured, in every experiment: a
+        sign is wrong on the card or in the model.
         """
-        told = [] if self.run.overflow is None else [self.run.overflow]
+        told = [*([] if self.run.overflow is None else [self.run.overflow]), *self.run.diverging]
         for name in (output.name for output in self.run.problem.model.outputs):
             found = [_correlation(self.data.recordings[e].signals[name], self[run][name]) for e, run in enumerate(self)]
             known = [one for one in found if np.isfinite(one)]

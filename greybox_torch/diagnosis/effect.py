@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,9 @@ from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.mechanisms.pitch import pitch_of
+
+SO_LITTLE = "so little that it may only compensate for the inexact form of the other laws"
+"""Why most refinements are no findings."""
 
 
 @dataclass(frozen=True)
@@ -138,8 +141,14 @@ class Effect:
 
     of_units: str = ""
     """That a gain is the factor of a unit that the model's equations may lack, or why there are none, a clause; "" elsewhere."""
+
     limited: tuple[str, ...] = ()
     """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
+
+    why_small: str = SO_LITTLE
+    """Of a refinement: why it is no finding, a clause."""
+    meanings: Mapping[str, str] = field(default_factory=dict)
+    """What its parameters are, by name, in words."""
 
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
@@ -198,10 +207,10 @@ class Effect:
     @property
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
-        return (
-            f"{spoken_at(self.mechanism, self.port)} accounts for {digits(100 * self.size)} % of the whole mismatch: so little that it may "
-            "only compensate for the inexact form of the other laws"
+        accounts = (
+            f"{spoken_at(self.mechanism, self.port)} accounts for {digits(100 * self.size)} % of the whole mismatch"
         )
+        return f"{accounts}: {self.why_small}"
 
     def as_json(self) -> dict[str, Any]:
         """Its entry under `effects`."""

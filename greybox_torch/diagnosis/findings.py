@@ -25,7 +25,7 @@ from greybox_torch.diagnosis.confirm.less_than_is_left import less_than_is_left
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
-from greybox_torch.diagnosis.confirm.standing import refinements, sizes
+from greybox_torch.diagnosis.confirm.standing import sizes, why_refinements
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
 from greybox_torch.diagnosis.confirm.when_stopped import found_first
 from greybox_torch.diagnosis.effect import Effect
@@ -171,15 +171,15 @@ def _curve_is_asked(searched: SearchState, found: Judged) -> bool:
     return bool(lost) and not state.has_curve and judged.left(True)[0] > judged.settings.left_to_ask_for_a_curve
 
 
-def small_ones(found: Findings, by_effect: Mapping[str, float]) -> set[str]:
-    """The effects that are refinements: those that windows say are too small, and those that are less than what free runs leave.
+def small_ones(found: Findings, by_effect: Mapping[str, float]) -> dict[str, str]:
+    """Why effects are refinements, a clause each: those that windows say are too small, and those that are less than what free runs leave.
 
     Args:
         by_effect: the size of every effect.
     """
     study, state = found.study, found.state
-    small = refinements(study, state, found.others, found.gains, by_effect)
-    return small | less_than_is_left(state, by_effect, found.judged, study.settings)
+    small = why_refinements(study, state, found.others, found.gains, by_effect)
+    return less_than_is_left(state, by_effect, found.judged, study.settings) | small
 
 
 def without_refinements_alone(found: Findings) -> Findings:
@@ -189,7 +189,7 @@ def without_refinements_alone(found: Findings) -> Findings:
     that was 39 % of the held-out error over windows of an eighth of the record, within chance, and 83 % over those of a quarter.
     """
     study, state = found.study, found.state
-    if not state.effects or small_ones(found, sizes(study, state, found.gains)) != state.prefixes:
+    if not state.effects or small_ones(found, sizes(study, state, found.gains)).keys() != state.prefixes:
         return found
     if shown_by_free_runs(study, state, found.gains, found.judged):
         return found

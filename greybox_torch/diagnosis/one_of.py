@@ -132,8 +132,10 @@ PERSONS = ("coulomb", "stribeck")
 """Whose names are parts of the names of mechanisms."""
 
 
-SPOKEN = {"torque_saturation": "input saturation"}
-"""Mechanisms whose name says less than what they are: the input that saturates may be a flow, a voltage or a valve."""
+SPOKEN = {"torque_saturation": "input saturation", "actuator_deadzone": "input dead zone"}
+"""Mechanisms whose name says less than what they are: the input that saturates may be a flow, a voltage or a valve. A dead zone of the
+actuator is at the port "actuator" anyway.
+"""
 
 
 def in_words(mechanism: str) -> str:

@@ -23,7 +23,7 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
-from greybox_torch.diagnosis.describe.unsure import unsure_candidate
+from greybox_torch.diagnosis.describe.unsure import best_further, unsure_candidate
 from greybox_torch.diagnosis.describe.without_a_name import A_DISTURBANCE, error_without_a_name, is_missing
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings, small_ones
@@ -217,6 +217,7 @@ def _as_found(
             shown=found.by_parameters is None,
             over_windows=times_noise(study.problem, state.current, study.settings),
             fit=mean_fit(judged.judging(judged.with_effects, unstable).scores),
+            further=best_further(study, state),
         ),
         unstable=unstable,
         settings=study.settings,
@@ -241,10 +242,8 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = small_ones(found, by_effect)
-    if small == state.prefixes:
-        small -= shown_by_free_runs(study, state, found.gains, judged)
-    both = list(zip(state.effects, told, strict=True))
-    return (
-        tuple(e for attached, e in both if attached.prefix not in small),
-        tuple(e for attached, e in both if attached.prefix in small),
-    )
+    shown = shown_by_free_runs(study, state, found.gains, judged) if small.keys() == state.prefixes else set[str]()
+    both = [
+        (small.get(a.prefix) if a.prefix not in shown else None, e) for a, e in zip(state.effects, told, strict=True)
+    ]
+    return tuple(e for why, e in both if why is None), tuple(replace(e, why_small=why) for why, e in both if why)

@@ -50,8 +50,8 @@ def told_at_bound(names: str) -> str:
         names: the parameters, with the bounds that they are at.
     """
     return (
-        f"At a bound: {names}; the standard deviations there mean little. Where physics does not end there, the model lacks something that "
-        "drives the parameter there, or the data hardly determine it beside those that it is correlated with"
+        f"At a bound: {names}; the standard deviations there mean little. Where the machine has no such limit, the model lacks something, "
+        "or the recordings do not tell the parameter from others"
     )
 
 

@@ -138,11 +138,11 @@ def _line(row: Row) -> Line:
         tag=FAILURE_WORDS.get(row.failure, "failed") if row.failed else ANSWER_WORDS[row.answer],
         verdict=text.first_capital(row.effect) or text.first_capital(ANSWER_WORDS[row.answer]),
         detail=row.message if row.failed else row.sentence,
-        how_sure="" if sure is None or row.failed else f"{sure:.2f}",
+        how_sure="" if sure is None or row.answer in ("failed", "unfinished") else f"{sure:.2f}",
         parameter=f"{row.parameter} = {value}" if value else "",
         before="" if row.answer == "nothing" else before,
         after=after,
-        seconds=text.number(row.seconds, 3 if row.seconds >= 10 else 2),
+        seconds="under 0.1" if row.seconds < 0.1 else text.number(row.seconds, 3 if row.seconds >= 10 else 2),
     )
 
 

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
+from greybox_torch.estimate.divergence import beyond_reach
 from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, since_start, with_unit
 
 Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
@@ -17,9 +18,6 @@ Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 
 _DETAIL = 0.05
 """Share of the record that the detail shows."""
-
-_FAR = 100.0
-"""Ranges of the measured signal beyond which a simulation ran away: the axes stay with the measured signal then, and its curve ends."""
 
 _MOST_ABREAST = 4
 """Entries of the legend that stand in one row."""
@@ -60,7 +58,13 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
         measured = recording.signals[output.name]
         runs = {legend[name]: _followed(measured, values[:, k]) for name, values in simulated.items()}
         lost = any(np.isnan(values).any() for values in runs.values())
-        worst = _worst(measured, list(runs.values())[-1])
+        label, last = list(runs.items())[-1]
+        worst = _worst(measured, last)
+        where = (
+            "the simulation runs away"
+            if np.isnan(last).any()
+            else f"the error{f' of {label}' * (len(runs) > 1)} is largest"
+        )
         for column, part in enumerate((slice(None), worst)):
             above = figure.add_subplot(grid[2 * k, column])
             below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
@@ -73,7 +77,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
                 above.set_ylabel(with_unit(output.name, output.unit))
                 below.set_ylabel(with_unit("error", output.unit))
             else:
-                above.set_title("where the error is largest", fontsize=9)
+                above.set_title(f"where {where}", fontsize=9)
     entries = above.get_legend_handles_labels()
     columns = len(entries[0]) if len(entries[0]) <= _MOST_ABREAST else 3
     figure.legend(*entries, loc="outside lower center", ncols=columns)
@@ -96,12 +100,8 @@ def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mappi
 
 
 def _followed(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
-    """Where a simulation overflows or runs away, its curve ends."""
-    known = measured[np.isfinite(measured)]
-    if not known.size:
-        return np.where(np.isfinite(simulated), simulated, np.nan)
-    reach = _FAR * (float(np.ptp(known)) or 1.0)
-    return np.where(np.abs(simulated - known.mean()) < reach, simulated, np.nan)
+    """Where a simulation overflows or runs away, its curve ends, and the axes stay with the measured signal."""
+    return np.where(beyond_reach(measured, simulated), np.nan, simulated)
 
 
 def _keep_to(measured: np.ndarray, above: Axes, below: Axes) -> None:
@@ -113,8 +113,11 @@ def _keep_to(measured: np.ndarray, above: Axes, below: Axes) -> None:
 
 
 def _worst(measured: np.ndarray, simulated: np.ndarray) -> slice:
-    """The stretch of the record with the largest squared error."""
+    """The stretch of the record with the largest squared error, or that in which a simulation's curve ends (NaN from there on)."""
     size = max(10, round(_DETAIL * len(measured)))
+    if np.isnan(simulated).any():
+        begin = min(max(int(np.argmax(np.isnan(simulated))) - size // 2, 0), max(len(measured) - size, 0))
+        return slice(begin, begin + size)
     squared = np.nan_to_num(measured - simulated) ** 2
     total = np.cumsum(np.concatenate([[0.0], squared]))
     begin = int(np.argmax(total[size:] - total[:-size])) if len(measured) > size else 0

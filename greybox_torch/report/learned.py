@@ -23,7 +23,7 @@ from greybox_torch.training.named_term import NamedTerm
 OWN_MOVED = 0.05
 """Part by which a parameter of the physics is another beside a law than beside the network, from where on the figure says so."""
 
-MOVED = "laws are drawn with a constant that the physics, estimated anew with them, takes over"
+MOVED = "laws are drawn with the constant and slope that the physics, estimated anew with them, takes over"
 
 HARDLY_SEEN = 0.02
 """Share of the learned curve's height by which a law that lies beside it is drawn where it is."""
@@ -50,7 +50,13 @@ def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
         # below the panels, where it hides nothing
         notes = [*([MOVED] if moved else []), *(taken_over(found, explained) if len(curves) == 1 else [])]
         told = {"title": "\n".join(notes), "title_fontsize": 7, "alignment": "left"} if notes else {}
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, fontsize=8, **told)
+        figure.legend(
+            *panels[0].get_legend_handles_labels(),
+            loc="outside lower center",
+            ncols=2 if len(curves) == 1 else 3,
+            fontsize=8,
+            **told,
+        )
     return figure
 
 
@@ -69,14 +75,17 @@ def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explan
     """Draws them; whether any is drawn with a constant."""
     around = found.hybrid.surroundings[found.hybrid.network.port]
     values = np.linspace(curve.values[0], curve.values[-1], 300)
-    unit, moved = around.force_unit, False
+    unit, moved, slopes = around.force_unit, False, bool(explained.own)
     for term, colour in zip(_drawn(explained), LAW_COLOURS, strict=False):
         mechanism = term.attachment.mechanism
         force = law_force(mechanism, around, {curve.signal: torch.as_tensor(values)}, term.parameters)
-        offset = offset_of(curve, values, force)
-        moved |= offset != 0.0
+        offset, slope = line_beside(curve, values, force, slopes)
+        moved |= offset != 0.0 or slope != 0.0
         by = f" {'+' if offset > 0 else '−'} {text.with_unit(digits(abs(offset)), unit)}" if offset else ""
-        axes.plot(values, force + offset, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}")
+        by += f" {'+' if slope > 0 else '−'} {digits(abs(slope))} {curve.signal}" if slope else ""
+        axes.plot(
+            values, force + offset + slope * values, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}"
+        )
     return moved
 
 
@@ -103,7 +112,15 @@ def taken_over(found: Trained, explained: Explanation) -> list[str]:
     return lines
 
 
-def offset_of(curve: SignalCurve, values: np.ndarray, force: np.ndarray) -> float:
-    """By how much the learned curve lies above a law's ``force`` (N,) over ``values`` (N,) in the mean; zero where that is hardly seen."""
-    offset = float(np.mean(curve.force - np.interp(curve.values, values, force)))
-    return offset if abs(offset) > HARDLY_SEEN * float(np.ptp(curve.force)) else 0.0
+def line_beside(curve: SignalCurve, values: np.ndarray, force: np.ndarray, slopes: bool) -> tuple[float, float]:
+    """Constant and slope of the line by which the learned curve lies above a law's ``force`` (N,) over ``values`` (N,); zero where that is
+    hardly seen.
+
+    Args:
+        slopes: whether parameters of the physics act as a force there as well, such as a damping; else the slope is zero.
+    """
+    above, height = curve.force - np.interp(curve.values, values, force), HARDLY_SEEN * float(np.ptp(curve.force))
+    slope = float(np.polyfit(curve.values, above, 1)[0]) if slopes else 0.0
+    slope = slope if abs(slope) * float(np.ptp(curve.values)) > height else 0.0
+    offset = float(np.mean(above - slope * curve.values))
+    return (offset if abs(offset) > height else 0.0), slope

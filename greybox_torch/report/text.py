@@ -79,11 +79,16 @@ def fit(value: float, digits: int = 1) -> str:
     return f"{value:.{digits}f} %".replace("-", "−") if value > -1e4 else "far off"
 
 
+def with_minus(sentence: str) -> str:
+    """A sentence whose negative numbers have a minus, as all other numbers of a report, in the place of a hyphen."""
+    return re.sub(r"(?<![\w.)-])-(?=\d)", "−", sentence)
+
+
 def unit(text: str) -> str:
     """A unit as it is printed: `N m/(rad/s)^2` becomes N·m/(rad/s)², and "1", that of plain numbers, nothing."""
     if text == "1":
         return ""
-    raised = re.sub(r"\^(-?\d+)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
+    raised = re.sub(r"\^(-?\d+)(?!\d*\.\d)", lambda found: found.group(1).translate(_SUPERSCRIPT), text)
     return re.sub(r"\s+", "·", raised.strip())
 
 

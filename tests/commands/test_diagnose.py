@@ -91,11 +91,11 @@ def test_what_is_printed(motor_folder: Make, finding: Callable[..., dict[str, An
     result = diagnose(folder)
     assert result.exit_code == 0
     lines = [" ".join(line.split()) for line in result.stdout.splitlines()]
-    assert any(line.startswith("The mismatch is actuator deadzone at actuator") for line in lines)
+    assert any(line.startswith("The mismatch is input dead zone at actuator") for line in lines)
     assert "actuator actuator_deadzone 0.91 98 half_width 0.4 0.01 V" in lines
     assert "slope 1 undetermined" in lines
-    assert "actuator deadzone at actuator: |voltage| < 0.4 V" in lines
-    rivals = "actuator deadzone at actuator: it could also be Coulomb friction at rotor (0.07); to tell them apart: slow reversals"
+    assert "input dead zone at actuator: |voltage| < 0.4 V" in lines
+    rivals = "input dead zone at actuator: it could also be Coulomb friction at rotor (0.07); to tell them apart: slow reversals"
     assert rivals in lines
     assert "Sweep validation speed 71 0.29 90 0.1 99.5 0.005 rad/s" in lines
     assert (
@@ -169,7 +169,7 @@ def test_what_is_written(motor_folder: Make, finding: Callable[..., dict[str, An
     saved = load_checkpoint(folder / "out" / "model")
     assert (saved.title, saved.figures) == ("Motor", verdict["fit"])
     page = (folder / "out" / "report.html").read_text()
-    assert "actuator deadzone at actuator (probability 0.91)" in page
+    assert "input dead zone at actuator (probability 0.91)" in page
     assert f"greybox compare {folder}/dataset.toml {folder}/out/model" in page
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.design_files import CARD
+from greybox_torch.api.design_notes import _beginning
 from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
 from greybox_torch.experiment_design.approach import begun_at, begun_there
@@ -122,3 +124,28 @@ def test_an_input_of_a_limited_rate_begins_where_it_stood(undecided) -> None:
     assert far.inputs["voltage"][0] == -1.0
     free = gt.design(undecided, precision="J", seconds=0.5)
     assert not free.limits.begin and not any("limited rate" in note for note in free.notes)
+
+
+def test_a_start_state_that_no_sensor_shows_is_told_as_an_estimate() -> None:
+    """Seen: "Begin … twist = -4.22e-05 rad", which nobody can set."""
+    states = (SimpleNamespace(name="speed", unit="rad/s"), SimpleNamespace(name="twist", unit="rad"))
+    found: Any = SimpleNamespace(
+        hypotheses=(SimpleNamespace(states=states),),
+        start={"speed": 2.0, "twist": -4.22e-5},
+        resting=(),
+        moving=(),
+        data=SimpleNamespace(channels={"speed": SimpleNamespace(unit="rad/s")}),
+        limits=SimpleNamespace(start={}, begin={}),
+        begins_like="steps",
+        inputs={},
+    )
+    assert list(_beginning(found)) == [
+        "Begin as steps began: speed = 2 rad/s, by the estimate twist = -4.22e-05 rad, which no sensor shows."
+    ]
+
+
+def test_reversals_are_told_as_the_triangle_wave_that_they_are(undecided) -> None:
+    """Seen: "15 s of reversals", a triangle of 36 to 52 N m."""
+    found = gt.design(undecided, precision="J", seconds=0.5)
+    turning = replace(found, excitations=tuple(replace(e, kind="reversals") for e in found.excitations))
+    assert "s of a triangle wave are expected to" in turning.sentence and turning.excitations[0].kind == "reversals"

@@ -90,7 +90,7 @@ def test_a_curve_is_asked_where_little_of_the_names_lasted(
 )
 def test_refinements_alone_leave_the_model_as_it_stands(monkeypatch, stub, small, shown, kept) -> None:
     """Seen: uptake of glucose that saturates: over longer windows the same curve was a finding, and gave way to itself as a refinement."""
-    monkeypatch.setattr(findings, "small_ones", lambda *_: {f"pool.{name}" for name in small})
+    monkeypatch.setattr(findings, "small_ones", lambda *_: {f"pool.{name}": "why" for name in small})
     monkeypatch.setattr(findings, "sizes", lambda *_: {})
     monkeypatch.setattr(findings, "shown_by_free_runs", lambda *_: shown)
     plain, curve = stub(effects=()), stub(effects=(stub(prefix="pool.curve"),))

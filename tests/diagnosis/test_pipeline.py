@@ -48,7 +48,7 @@ def test_fit_before_and_after(found) -> None:
 def test_verdict_says_how_it_came_about(found) -> None:
     verdict = found.verdict
     assert verdict.complete and verdict.seed == 7 and verdict.mismatch
-    assert verdict.evidence and any("Held out: actuator deadzone at actuator" in line for line in verdict.evidence)
+    assert verdict.evidence and any("Held out: input dead zone at actuator" in line for line in verdict.evidence)
     assert any("errors, model as it stands, are not correlated with past inputs" in line for line in verdict.evidence)
     assert any(line.startswith("They are not white") for line in verdict.evidence)
     assert not any("feedback" in line for line in verdict.evidence)

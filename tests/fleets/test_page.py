@@ -73,6 +73,9 @@ def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     assert "something is missing from the model; 1 data set without an answer yet." in text_of(
         render_fleet([coulomb("one", 0.3), stopped], (), ())
     )
+    unfinished = Row("three", "c.toml", "unfinished", machine="three", confidence=0.5, seconds=0.00074)
+    told = text_of(render_fleet([unfinished], (), ()))
+    assert "0.50" not in told and "0.00074" not in told and "under 0.1" in told
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
 
 

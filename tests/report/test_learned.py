@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.report.learned import offset_of, taken_over
+from greybox_torch.report.learned import line_beside, taken_over
 from greybox_torch.training.learned_force import SignalCurve
 
 LEVEL = np.linspace(40.0, 140.0, 30)
@@ -23,8 +23,18 @@ def test_a_law_is_drawn_with_the_constant_that_the_physics_takes_over() -> None:
     values = np.linspace(40.0, 140.0, 300)
     law = np.interp(values, [40.0, 90.0, 140.0], [0.0, 0.0, -20.0])
     learned = np.interp(LEVEL, values, law)
-    assert offset_of(curve(learned + 8.0), values, law) == pytest.approx(8.0)
-    assert offset_of(curve(learned + 0.1), values, law) == 0.0
+    assert line_beside(curve(learned + 8.0), values, law, False) == (pytest.approx(8.0), 0.0)
+    assert line_beside(curve(learned + 0.1), values, law, False) == (0.0, 0.0)
+
+
+def test_and_with_the_slope_of_a_damping() -> None:
+    """Seen: Coulomb friction as a flat line across a learned curve that rises from -1500 to 0 N, and in the table 98 % matched."""
+    law = np.full(300, -1500.0)
+    values = np.linspace(40.0, 140.0, 300)
+    learned = curve(-1500.0 + 15.0 * LEVEL)
+    offset, slope = line_beside(learned, values, law, True)
+    assert (offset, slope) == (pytest.approx(0.0, abs=1e-6), pytest.approx(15.0))
+    assert line_beside(learned, values, law, False)[1] == 0.0
 
 
 def test_the_figure_says_what_the_physics_takes_over() -> None:

@@ -74,9 +74,16 @@ def test_fit() -> None:
     assert text.fit(-1e7) == "far off"
 
 
+def test_negative_numbers_of_a_sentence_have_a_minus() -> None:
+    """Seen: "-34.2 %" in the headline of a report, and "−34.19 %" below it."""
+    told = text.with_minus("goes from -34.2 % to 98.0 %: ±-1, 2025-11-03, x**-2, c-3, 1e-05, high-pass, (-0.5")
+    assert told == "goes from −34.2 % to 98.0 %: ±−1, 2025-11-03, x**−2, c-3, 1e-05, high-pass, (−0.5"
+
+
 def test_units_and_names() -> None:
     assert text.unit("N m/(rad/s)^2") == "N·m/(rad/s)²"
     assert text.unit("kg m^-1") == "kg·m⁻¹"
+    assert text.unit("m^3/s/V/Pa^0.5") == "m³/s/V/Pa^0.5", "seen: Pa⁰.5"
     assert text.with_unit("3", "") == "3"
     assert text.axis("motor_speed", "rad/s") == "motor speed [rad/s]"
     assert text.axis("level", "") == "level"

@@ -10,14 +10,16 @@ from collections.abc import Mapping
 
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.too_little import points_gained
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 def less_than_is_left(
     state: SearchState, sizes: Mapping[str, float], judged: Judgement, settings: DiagnosisSettings
-) -> set[str]:
-    """The effects that are refinements, as they account for less than what free runs of the validation experiments leave with all of them.
+) -> dict[str, str]:
+    """Why effects are refinements, a clause each: they account for less than what free runs of the validation experiments leave with all of
+    them.
 
     That holds far above the noise, where the fit hardly rises with all of them. Seen: eleven small laws that a complete strut had and its
     model did not, told as an end stop (0.97), 19 % of the mismatch, and three more; validation 97.7 to 98.3 %, 53 % left. And what is
@@ -28,11 +30,16 @@ def less_than_is_left(
         sizes: by effect, the share of the mismatch that it accounts for.
     """
     if not state.effects or judged.by_windows_alone:
-        return set()
+        return {}
     share, times, _ = judged.left(True)
-    parts = _little_beside_a_larger_one(sizes, share, settings) if times > settings.above_noise else set()
+    left = f"free runs leave {digits(100 * share)} % with all that was found"
+    parts: dict[str, str] = {}
     if times > settings.far_above_noise and points_gained(judged) < settings.least_points_of_curve:
-        parts |= {prefix for prefix in state.prefixes if sizes[prefix] < share}
+        why = f"{left}, which is more, and the fit hardly rises: it may be one of many small parts of that"
+        parts |= {prefix: why for prefix in state.prefixes if sizes[prefix] < share}
+    if times > settings.above_noise:
+        why = f"{left}, and beside a larger effect it may be what that one lacks"
+        parts |= dict.fromkeys(_little_beside_a_larger_one(sizes, share, settings), why)
     return parts
 
 

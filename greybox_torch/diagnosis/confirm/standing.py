@@ -13,9 +13,11 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
 from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_noise_of_sensor, within_tolerance
+from greybox_torch.diagnosis.effect import SO_LITTLE
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.size import size
+from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -25,6 +27,20 @@ from greybox_torch.mechanisms.mechanism import Mechanism
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.transmission import HystereticSpring
 from greybox_torch.model import GreyBoxModel
+
+BY_TIMING = "a shift of a small part of a sampling interval, by which the time stamps of input and outputs may differ"
+BY_NOISE_OF_SENSOR = "hardly more than the sensor's noise"
+OF_LITTLE = (
+    "the model as it stands leaves little more than noise over windows, and of that sensors, converters and wear make parts that any law "
+    "takes up"
+)
+WITHIN_TOLERANCE = (
+    "the model as it stands leaves little more than noise over windows, and none is exact to so small a shift in time, so small an error "
+    "of a gain or a bend of its own friction"
+)
+NOT_BORNE_OUT = "little, and the experiments that had no part in choosing it do not bear it out beyond chance"
+OF_MUCH = "most of the mismatch is left with all that was found, and any law takes up a part of that"
+"""Why effects are refinements; another reason is ``SO_LITTLE``."""
 
 
 def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[str, float]:
@@ -65,8 +81,16 @@ def _completed(study: Study, state: SearchState, others: HeldOut | None) -> bool
 def refinements(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
 ) -> set[str]:
-    """The effects that are too small to be findings, or that small and not confirmed by held-out experiments beyond chance, and shifts in
-    time by next to nothing of a sampling interval, and curves of a sensor that are hardly more than its noise.
+    """The effects that are no findings, but refinements of the model: arguments and reasons as for :func:`why_refinements`."""
+    return set(why_refinements(study, state, others, gains, sizes))
+
+
+def why_refinements(
+    study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
+) -> dict[str, str]:
+    """Why effects are refinements, a clause each: they are too small to be findings, or that small and not confirmed by held-out
+    experiments beyond chance, or shifts in time by next to nothing of a sampling interval, or curves of a sensor that are hardly more than
+    its noise.
 
     Where the model leaves little more than noise: those that do not account for most of what is beyond it on the held-out experiments, and
     those that no model is exact to. No machine is exactly its model. A sensor's filter, a converter's steps and a wear of a few thousandths
@@ -85,12 +109,13 @@ def refinements(
         sizes: of every effect, from :func:`sizes`.
     """
     told = others is not None and not all(g.unexercised(study.settings) for g in gains.values())
-    small = _too_small(study, state, others, gains, sizes)
-    small |= {e.prefix for e in state.effects if is_timing(study, state, e) or within_noise_of_sensor(study, state, e)}
-    parts = {p for p in state.prefixes if told and sizes[p] < study.settings.least_of_little}
-    rest = [e for e in state.effects if e.prefix not in small | parts]
-    little = parts | {e.prefix for e in rest if within_tolerance(study, state, e, sizes[e.prefix])}
-    return small | little if little and _little_is_missing(study, state, others) else small
+    small = {e.prefix: BY_TIMING for e in state.effects if is_timing(study, state, e)}
+    small |= {e.prefix: BY_NOISE_OF_SENSOR for e in state.effects if within_noise_of_sensor(study, state, e)}
+    small |= _too_small(study, state, others, gains, sizes)
+    little = {p: OF_LITTLE for p in state.prefixes if told and sizes[p] < study.settings.least_of_little}
+    rest = [e for e in state.effects if e.prefix not in {*small, *little}]
+    little |= {e.prefix: WITHIN_TOLERANCE for e in rest if within_tolerance(study, state, e, sizes[e.prefix])}
+    return little | small if little and _little_is_missing(study, state, others) else small
 
 
 def findings(study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain]) -> list[Attachment]:
@@ -101,8 +126,8 @@ def findings(study: Study, state: SearchState, others: HeldOut | None, gains: Ma
 
 def _too_small(
     study: Study, state: SearchState, others: HeldOut | None, gains: Mapping[str, Gain], sizes: Mapping[str, float]
-) -> set[str]:
-    """The effects that are too small to be findings, arguments as for :func:`refinements`."""
+) -> dict[str, str]:
+    """Why effects are too small to be findings, a clause each; arguments as for :func:`why_refinements`."""
     settings, completed = study.settings, _completed(study, state, others)
     effects = {e.prefix: e for e in state.effects}
     most_is_left = cache(partial(_most_is_left, study, state, others))
@@ -118,16 +143,29 @@ def _too_small(
         confirmed = gain is None or gain.errors_away > settings.held_out_beyond_chance
         return sizes[prefix] < settings.least_size and not confirmed
 
-    def part_of_another(prefix: str) -> bool:
+    def part_of_another(prefix: str) -> str:
         own = effects[prefix]
         larger = [e for p, e in effects.items() if sizes[p] > sizes[prefix]]
-        if any(_one_hysteresis(study.problem.model, e, own) for e in larger):
-            return True
-        lacks = any(not completed or _of_one_kind(e.mechanism, own.mechanism) for e in larger if e.port == own.port)
-        lacks |= bool(larger) and own.mechanism.free
-        return sizes[prefix] < settings.least_size_beside_larger and (lacks or (bool(larger) and most_is_left()))
+        whole = next((e for e in larger if _one_hysteresis(study.problem.model, e, own)), None)
+        if whole is not None:
+            return f"{_spoken(whole)} is an element of the same hysteresis, of which a law has one"
+        if not larger or sizes[prefix] >= settings.least_size_beside_larger:
+            return ""
+        there = [e for e in larger if e.port == own.port]
+        lacking = [e for e in there if not completed or _of_one_kind(e.mechanism, own.mechanism)]
+        if lacking:
+            return f"it may be what {_spoken(lacking[0])}, which is larger, lacks to be the machine's law"
+        if own.mechanism.free:
+            return "beside a larger effect a free curve may draw what that one lacks"
+        return OF_MUCH if most_is_left() else ""
 
-    return {p for p in state.prefixes if not sizes[p] >= least(p) or doubtful(p) or part_of_another(p)}
+    small = {p: SO_LITTLE for p in state.prefixes if not sizes[p] >= least(p)}
+    small |= {p: NOT_BORNE_OUT for p in state.prefixes - small.keys() if doubtful(p)}
+    return small | {p: why for p in state.prefixes - small.keys() if (why := part_of_another(p))}
+
+
+def _spoken(effect: Attachment) -> str:
+    return spoken_at(effect.mechanism.name, effect.port)
 
 
 def _most_is_left(study: Study, state: SearchState, others: HeldOut | None) -> bool:
@@ -190,7 +228,7 @@ def sharing_with_the_rest(
     small = _too_small(study, state, others, gains, by_effect)
     if len(small) < 2:
         return None
-    without = _without_all(study, state, small)
+    without = _without_all(study, state, set(small))
     plain, rest, full = (h.fits if others is None else others.fits(h) for h in (state.plain, without, state.current))
     together = size(plain, rest, full, study.settings)
     return min(sorted(small), key=lambda p: by_effect[p]) if together >= study.settings.least_size else None

@@ -143,6 +143,7 @@ def _effect(
         or without_unit(attachment, site, around, parameters),
         limited=why_limited(uncapped, limit, gain, study.settings),
         size=account.size,
+        meanings={p.name.removeprefix(own): p.description for p in model.declared_parameters if p.name.startswith(own)},
     )
 
 
@@ -216,7 +217,7 @@ def where(
     strongest = max(timelines, key=lambda t: t.intensity).experiment if len(timelines) > 1 else ""
     also = f", strongest in {strongest}" if strongest else ""
     if not profiles:
-        return f"everywhere along the records{also}"
+        return f"what it explains is spread over the whole recordings{also}"
     first = profiles[0]
     if beyond is not None:
         ends = [f"{first.signal} {sign} {end:.4g}" for sign, end in zip("<>", beyond, strict=True) if end is not None]

@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.beside_noise import beside_noise, why_negligible
 from greybox_torch.diagnosis.describe.residual_tests import Detection, Largest
 from greybox_torch.diagnosis.describe.unit_of_errors import unit_of_errors
+from greybox_torch.diagnosis.describe.unsure import of_little
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -139,7 +140,7 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
         f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
     )
     if little:
-        return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
+        return f"{lowers}. {begun(of_little(settings))}."
     return f"{lowers}; claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
 
 
@@ -170,8 +171,8 @@ def ceiling_sentence(effect: Effect) -> str:
     """How near a named effect comes to what any law of its kind could explain."""
     share = 100 * (effect.ceiling or 0.0)
     return (
-        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
-        "of the mean squared error, of the best free curve that was fitted in its place."
+        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: what the best free curve that was fitted in its "
+        "place gains (each gain as the logarithm of the factor by which the mean squared error falls)."
     )
 
 

@@ -25,6 +25,7 @@ def what_is_left(
     shown: bool = True,
     over_windows: float = np.inf,
     fit: float = 0.0,
+    further: str = "",
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
@@ -34,6 +35,7 @@ def what_is_left(
         over_windows: the error over windows of the estimation experiments, whose start states are estimated, in units of the noise.
         fit: mean fit of the recommended model on the validation experiments that count, in %. Below zero the share that is left says
             nothing: it may be little of what a model leaves that is lost.
+        further: a clause on what would take up much of it, where something would.
     """
     share, times, worst = judged.left(effects)
     parts = over_windows <= noise < times and _parts(judged, effects, worst)
@@ -44,6 +46,8 @@ def what_is_left(
         if times < noise and (beyond or coloured)
         else "windows whose start states are estimated leave hardly more than noise: nothing else is missing that they show"
         if parts
+        else f"the error is {'correlated with past inputs' if beyond else 'not white'}, and part of it is repeatable: {further}"
+        if further and (beyond or coloured)
         else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
         else "the error is not white, and past inputs do not explain it linearly: look at it over time (greybox residuals) for what is not "

@@ -141,6 +141,8 @@ def _remains(sheets: Sheets, told: Remains | None) -> None:
     rows = [[(f"{row.mechanism} at {row.port}", ""), (row.size, "")] for row in told.refinements]
     if rows:
         draw_table(sheets, [("Refinement", "no finding rests on it"), ("Share of the mismatch", "")], rows, [0.7, 0.3])
+    for row in told.refinements:
+        sheets.text(f"{text.first_capital(row.mechanism)} at {row.port}: {row.why}.", 8.0, colour=QUIET)
 
 
 def _limits(sheets: Sheets, told: Limits | None) -> None:

@@ -157,7 +157,7 @@ def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
             math.nan if value is None else float(value), None if deviation is None else float(deviation)
         )
         rows.append(
-            ParameterRow(text.symbol(name), entry.get("description", ""), shown, text.unit(entry.get("unit", "")))
+            ParameterRow(text.symbol(name), effect.meanings.get(name, ""), shown, text.unit(entry.get("unit", "")))
         )
         if pitch := effect.pitch(name):
             told = "travel in which it repeats, 2 pi over the order"

@@ -42,7 +42,7 @@ class Headline:
         figures = [_fit(verdict), *_errors(verdict)]
         if verdict.mismatch or (verdict.complete and verdict.looked):
             figures.append(_confidence(verdict))
-        told = (verdict.dataset, verdict.model, verdict.sentence, answer, tuple(figures))
+        told = (verdict.dataset, verdict.model, text.with_minus(verdict.sentence), answer, tuple(figures))
         beside = (*verdict.asked, *verdict.of_no_use, *verdict.no_longer_validation, *verdict.short_validation)
         return cls(*told, verdict.complete, verdict.not_tried.sentences(), beside)
 

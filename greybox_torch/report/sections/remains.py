@@ -11,11 +11,12 @@ from greybox_torch.report import text
 
 @dataclass(frozen=True)
 class Refinement:
-    """A row: what it would be called, where, and its share of the whole mismatch in %."""
+    """A row: what it would be called, where, its share of the whole mismatch in %, and why it is no finding."""
 
     mechanism: str
     port: str
     size: str
+    why: str
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Remains:
         if verdict.left is None:
             return None
         rows = (
-            Refinement(text.words(e.mechanism), e.port, f"{digits(100 * e.size)} %")
+            Refinement(text.words(e.mechanism), e.port, f"{digits(100 * e.size)} %", e.why_small)
             for e in sorted(verdict.refinements, key=lambda e: -e.size)
         )
         return cls(" ".join((verdict.left.sentence, *verdict.worse_outputs)), tuple(rows))

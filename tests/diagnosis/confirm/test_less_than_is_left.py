@@ -21,7 +21,7 @@ def asked(
     monkeypatch.setattr(module, "points_gained", lambda judged: points)
     judged: Any = SimpleNamespace(by_windows_alone=windows, left=lambda effects: (share, times, "sweep"))
     state: Any = SimpleNamespace(effects=tuple(SIZES) if effects else (), prefixes=set(SIZES))
-    return less_than_is_left(state, SIZES, judged, SETTINGS)
+    return set(less_than_is_left(state, SIZES, judged, SETTINGS))
 
 
 def test_less_than_free_runs_leave_is_a_part_of_it(monkeypatch) -> None:

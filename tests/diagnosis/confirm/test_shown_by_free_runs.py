@@ -11,6 +11,7 @@ import pytest
 from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.confirm import shown_by_free_runs as module
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
@@ -133,8 +134,9 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
         removed=0.5,
     )
     monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
-    monkeypatch.setattr(pipeline, "describe", lambda *_: ("friction", "bias"))
-    monkeypatch.setattr(pipeline, "small_ones", lambda *_: set(small))
+    told_of = [Effect("motor", name, 0.9, (), "", {}, 0.0, (), None) for name in ("friction", "bias")]
+    monkeypatch.setattr(pipeline, "describe", lambda *_: told_of)
+    monkeypatch.setattr(pipeline, "small_ones", lambda *_: dict.fromkeys(small, "why"))
     monkeypatch.setattr(pipeline, "shown_by_free_runs", lambda *_: {FRICTION.prefix})
-    told = pipeline._told(found)
+    told = tuple(tuple(e.mechanism for e in part) for part in pipeline._told(found))
     assert told == ((("bias",), ("friction",)) if len(small) == 1 else (("friction",), ("bias",)))

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm import within_tolerance as module
-from greybox_torch.diagnosis.confirm.standing import refinements
+from greybox_torch.diagnosis.confirm.standing import BY_TIMING, refinements, why_refinements
 from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_noise_of_sensor, within_tolerance
+from greybox_torch.diagnosis.effect import SO_LITTLE
 from greybox_torch.diagnosis.hypothesis.fit import hypothesis
 from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import Attachment, attach
@@ -98,6 +99,17 @@ def test_a_shift_by_next_to_nothing_of_a_sampling_interval_is_never_a_finding(
     found = state(**{f"{effect.prefix}.T": samples * interval})
     assert is_timing(study, found, effect) is timing
     assert not is_timing(study, found, Attachment("rotor", ConstantBias())), "no shift in time"
+
+
+@pytest.mark.parametrize(("size", "why"), [(0.64, BY_TIMING), (0.001, SO_LITTLE)])
+def test_why_a_shift_in_time_is_a_refinement(dead_zone_search, stub, size: float, why: str) -> None:
+    """Seen: a lag that accounts for 64 % of the whole mismatch, "so little that it may only compensate"."""
+    study, effect = dead_zone_search.study, Attachment("actuator", InputLag())
+    seconds = 0.02 * float(np.median(study.problem.records.dt))
+    current = stub(values=lambda: {f"{effect.prefix}.T": seconds}, problem=study.problem)
+    state = stub(effects=(effect,), prefixes={effect.prefix}, current=current, plain=dead_zone_search.plain)
+    others = stub(times_noise=lambda hypothesis: np.array([10.0]))
+    assert why_refinements(study, state, others, {}, {effect.prefix: size}) == {effect.prefix: why}
 
 
 @pytest.mark.parametrize(("times", "within"), [(1.0, True), (10.0, False)])

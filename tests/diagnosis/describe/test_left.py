@@ -65,6 +65,16 @@ def test_much_that_remains_and_is_noise_is_told_as_such(stub) -> None:
         )
 
 
+@pytest.mark.parametrize(("past", "colour", "told"), [(False, True, True), (True, True, True), (False, False, False)])
+def test_what_would_take_up_much_of_it_is_told_instead_of_a_load(stub, past: bool, colour: bool, told: bool) -> None:
+    """Seen: an inverter's lag in the evidence alone, 51 % and 16.5 standard errors, and the advice to look for a load."""
+    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    judged = stub(left=lambda effects: (0.002, 6.0, "Run 2"))
+    sentence = what_is_left(judged, found, True, 1.3, further="input lag at motor would take up 51 % of it").sentence
+    assert sentence.endswith("part of it is repeatable: input lag at motor would take up 51 % of it.") is told
+    assert "such as a load" not in sentence
+
+
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(

@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.describe.unsure import unsure_candidate
+from greybox_torch.diagnosis.describe import unsure as module
+from greybox_torch.diagnosis.describe.unsure import best_further, unsure_candidate
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -50,3 +52,31 @@ def test_what_removes_little_or_is_sure_or_was_taken_or_stands_beside_others_is_
 
 def test_too_few_windows(told) -> None:
     assert "but there are too few windows to be sure;" in told((CoulombFriction(), 0.89, 0.0), windows=2)
+
+
+@pytest.fixture
+def further(stub, monkeypatch: pytest.MonkeyPatch):
+    def make(removed: float, errors: float, *, taken=False, little=True, beside="arm.constant_bias"):
+        """The clause for one candidate of a step, where ``beside`` was found before it."""
+        monkeypatch.setattr(module, "leaves_little", lambda *_: little)
+        parent = stub(effects=(stub(prefix=beside),))
+        best = stub(candidate=stub(attachment=Attachment("motor", InputLag())), removed=removed, significance=errors)
+        step = SelectionStep((), parent, (best,), best if taken else None)
+        current = stub(effects=(Attachment("arm", ConstantBias()),))
+        return best_further(stub(settings=DiagnosisSettings()), SearchState(stub(), current, (step,)))
+
+    return make
+
+
+def test_the_best_beside_what_was_found(further) -> None:
+    """Seen: a lag that would lower the error by 51 % (16.5 standard errors), and "look … for what is not recorded, such as a load"."""
+    told = "input lag at motor would take up 51 % of it over windows (16.5 standard errors), and was not taken"
+    assert further(0.51, 16.5, little=False) == told
+    assert further(0.51, 16.5).startswith(
+        f"{told}: less than 2 % of the mismatch was left, and there a further effect is"
+    )
+
+
+def test_not_what_takes_up_little_or_is_not_sure_or_stands_beside_others(further) -> None:
+    assert further(0.1, 16.5) == further(0.51, 2.0) == further(0.51, 16.5, taken=True) == ""
+    assert further(0.51, 16.5, beside="arm.coulomb_friction") == ""

@@ -30,6 +30,14 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
     assert [mark.kind for mark in panel.marks] == ["area", "line"]
 
 
+def test_what_its_parameters_are(of_kind: Callable[[str], Verdict]) -> None:
+    """Seen: F_c, F_s, c, v_s and v_0 without a word of what they are."""
+    verdict = of_kind("found")
+    (effect,) = verdict.effects
+    effects = Effects.of(replace(verdict, effects=(replace(effect, meanings={"half_gap": "half the play"}),)))
+    assert effects is not None and [row.description for row in effects.cards[0].parameters] == ["half the play"]
+
+
 def test_what_cannot_be_told_apart_stands_first(of_kind: Callable[[str], Verdict]) -> None:
     (effect,) = of_kind("found").effects
     members = (Alternative("gear_spring", "backlash", 0.9), Alternative("arm_spring", "backlash", 0.05))
