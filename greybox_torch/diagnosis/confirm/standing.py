@@ -100,9 +100,10 @@ def why_refinements(
     beside it (a class of seven, 0.97), a twentieth of it.
 
     Of two laws of friction at one body, or of one spring, the smaller one has to be larger than other effects: it may be what the other
-    lacks. So has any law at the port of a larger one, where more than noise is left in spite of both, and a free curve beside a larger law
-    wherever that is: it draws what any of them lacks. So has every law beside a larger one where most of the mismatch is left. Seen: a hoop
-    whose drive's law is a stand-in, told with waves over 3.5 periods of its travel (0.50), 8 % of the mismatch of which 78 % is left.
+    lacks. So has any law at the port of a larger one, where more than noise is left in spite of both and it does not remove nearly all of
+    the rest, and a free curve beside a larger law wherever that is: it draws what any of them lacks. So has every law beside a larger one
+    where most of the mismatch is left. Seen: a hoop whose drive's law is a stand-in, told with waves over 3.5 periods of its travel (0.50),
+    8 % of the mismatch of which 78 % is left.
     Of two hystereses of one motion the smaller one is a refinement, however large.
 
     Args:
@@ -152,7 +153,8 @@ def _too_small(
         if not larger or sizes[prefix] >= settings.least_size_beside_larger:
             return ""
         there = [e for e in larger if e.port == own.port]
-        lacking = [e for e in there if not completed or _of_one_kind(e.mechanism, own.mechanism)]
+        alone = completed or _nearly_all(gains.get(prefix), settings.all_of_the_rest)
+        lacking = [e for e in there if not alone or _of_one_kind(e.mechanism, own.mechanism)]
         if lacking:
             return f"it may be what {_spoken(lacking[0])}, which is larger, lacks to be the machine's law"
         if own.mechanism.free:

@@ -131,12 +131,13 @@ def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_p
     """
     study, plain = dead_zone_search.study, dead_zone_search.plain
 
-    def told(*attached: tuple[str, Mechanism], small: float, left: float = 1.0) -> list[str]:
+    def told(*attached: tuple[str, Mechanism], small: float, left: float = 1.0, of_the_rest: float = 0.5) -> list[str]:
         effects = tuple(Attachment(port, law) for port, law in attached)
         prefixes = [e.prefix for e in effects]
         state = stub(effects=effects, prefixes=set(prefixes), plain=plain, current=plain)
         others = stub(times_noise=lambda hypothesis: np.array([left]), fits=lambda hypothesis: ())
-        some = refinements(study, state, others, {}, dict(zip(prefixes, [0.7, small], strict=True)))
+        gains = {prefixes[1]: Gain(of_the_rest, 0.01, size=small)}
+        some = refinements(study, state, others, gains, dict(zip(prefixes, [0.7, small], strict=True)))
         return [p for p in prefixes if p not in some]
 
     bristles, viscous, bias = ("arm", PreslidingHysteresis()), ("arm", ViscousFriction()), ("arm", ConstantBias())
@@ -150,6 +151,10 @@ def test_of_two_laws_of_friction_at_one_body_or_of_one_spring_the_small_one_is_p
     )
     assert len(told(play, bent, small=0.2)) == len(told(play, ("shaft", NonlinearStiffness()), small=0.06)) == 2
     assert told(bristles, bias, small=0.06, left=75.0) == ["arm.presliding_hysteresis"], "of a law that lacks something"
+    assert len(told(bristles, bias, small=0.06, left=75.0, of_the_rest=0.994)) == 2, (
+        "seen: a table's dry friction, 7.8 % beside its weight: without it 24 times what is left"
+    )
+    assert len(told(bristles, viscous, small=0.06, left=75.0, of_the_rest=0.994)) == 1
     assert len(told(bristles, bias, small=0.2, left=75.0)) == 2
     assert len(told(bristles, ("motor", ConstantBias()), small=0.06, left=75.0)) == 2
 
