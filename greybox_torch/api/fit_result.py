@@ -29,6 +29,7 @@ from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
+from greybox_torch.model.own_weights import digest
 from greybox_torch.report import notebook
 from greybox_torch.result_names import FIT, MODEL
 from greybox_torch.systems import model_reference
@@ -168,6 +169,7 @@ class FitResult(EstimatedModel):
             units={p.name: p.unit for p in given.declared_parameters},
             effects=stored_effects(given),
             free_starts=given.starts_free,
+            own_weights=digest(given),
             dataset=self.data.sha256,
             figures=scores_side_by_side(self._scores),
         )
