@@ -44,14 +44,14 @@ def _with_bound(name: str, unit: str, value: float, lower: float, upper: float) 
 
 
 def told_at_bound(names: str) -> str:
-    """What a reader has to know of parameters at their bounds, one sentence and another, without a full stop.
+    """What a reader has to know of parameters at their bounds, without a full stop.
 
     Args:
         names: the parameters, with the bounds that they are at.
     """
     return (
-        f"At a bound: {names}; the standard deviations there mean little. Where physics does not end there, the model lacks something that "
-        "drives the parameter there, or the data hardly determine it beside those that it is correlated with"
+        f"At a bound: {names}; standard deviations mean little there. Widen the bound where it is no limit of physics; else the model "
+        "lacks something, or the data hardly tell the parameter from others"
     )
 
 

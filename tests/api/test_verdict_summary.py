@@ -203,5 +203,11 @@ def test_the_models_own_parameters_at_a_bound_are_told() -> None:
     told = f"{told_at_bound('b = 0 N s/m (with the effects) and T = 0.005 s (without the effects)')}."
     assert told in notes(found) and found.as_json()["at_bounds"] == [told]
     assert f"{told_at_bound('T = 0.005 s')}." in notes(without) and "at_bounds" not in verdict().as_json()
+    at_card = replace(found, parameters=(Estimate("M", "kg", 5000.0, (5500.0, 2.0), (5500.0, 1.0), (True, True)),))
+    (told,) = at_card.at_bounds  # seen: "M = 5500 kg and b_v = 0 N s/m (without the effects)", of a mass of 6000 kg
+    assert told.startswith("At a bound: M = 5500 kg (without and with the effects);")
+    assert (
+        "With the effects M may go no further: if the truth lies beyond, effects and refinements make up for it" in told
+    )
     small = replace(BACKLASH, parameters={"sharpness": {"value": 9.0}}, at_bounds=("sharpness",))
     assert any(told_at_bound("sharpness = 9") in line for line in notes(replace(found, refinements=(small,))))
