@@ -183,7 +183,7 @@ def _effect(study: Study, effect: Attachment, gain: CommonGain, likely: Sequence
         mechanism=effect.mechanism.name,
         probability=round(float(own), 4),
         signals=effect.mechanism.signals(),
-        where="everywhere along the records",
+        where="it acts throughout the recordings",
         parameters={parameter.name: {"value": gain.error, "std": gain.deviation, "unit": parameter.unit}},
         explained=0.0,
         alternatives=rivals,

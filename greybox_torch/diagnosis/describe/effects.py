@@ -184,13 +184,12 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
 def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
     values, deviations = final.values(), final.deviations()
     start = f"{attachment.prefix}."
-    units = {p.name: p.unit for p in model.declared_parameters}
-    result = {}
-    for name in units:
-        if name.startswith(start):
+    result: dict[str, dict[str, Any]] = {}
+    for one in model.declared_parameters:
+        if one.name.startswith(start):
             # infinite where the recordings do not determine it; None where it was not estimated, or whole records were not fitted
-            own = {"value": values[name], "std": deviations.get(name), "unit": units[name]}
-            result[name.removeprefix(start)] = own
+            own = {"value": values[one.name], "std": deviations.get(one.name), "unit": one.unit}
+            result[one.name.removeprefix(start)] = own | ({"description": one.description} if one.description else {})
     return result
 
 
@@ -218,7 +217,7 @@ def where(
     strongest = max(timelines, key=lambda t: t.intensity).experiment if len(timelines) > 1 else ""
     also = f", strongest in {strongest}" if strongest else ""
     if not profiles:
-        return f"everywhere along the records{also}"
+        return f"it acts throughout the recordings{also}"
     first = profiles[0]
     if beyond is not None:
         ends = [f"{first.signal} {sign} {end:.4g}" for sign, end in zip("<>", beyond, strict=True) if end is not None]

@@ -139,7 +139,7 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
         f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
     )
     if little:
-        return f"{lowers}. {_little(settings)}, of which only what leaves noise alone is claimed."
+        return f"{lowers}. {_little(settings)}: so near the end only an effect that leaves nothing but noise is claimed."
     return f"{lowers}; claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
 
 
@@ -170,8 +170,8 @@ def ceiling_sentence(effect: Effect) -> str:
     """How near a named effect comes to what any law of its kind could explain."""
     share = 100 * (effect.ceiling or 0.0)
     return (
-        f"{spoken_at(effect.mechanism, effect.port)} reaches {share:.0f} % of the ceiling: the gain, in the logarithm "
-        "of the mean squared error, of the best free curve that was fitted in its place."
+        f"{spoken_at(effect.mechanism, effect.port)} lowers the logarithm of the mean squared error by {share:.0f} % of what the best free "
+        "curve in its place does (the ceiling)."
     )
 
 

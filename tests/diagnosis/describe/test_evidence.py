@@ -94,7 +94,7 @@ def test_a_curve_is_its_own_ceiling(stub) -> None:
 
 def test_ceiling_in_words(stub) -> None:
     told = ceiling_sentence(stub(mechanism="coulomb_friction", port="motor", ceiling=0.883))
-    assert told.startswith("Coulomb friction at motor reaches 88 % of the ceiling: the gain")
+    assert told.startswith("Coulomb friction at motor lowers the logarithm of the mean squared error by 88 % of what")
 
 
 def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
@@ -108,7 +108,7 @@ def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
     [
         (
             0.01,
-            "(12.8 standard errors). Less than 2 % of the mismatch was left, of which only what leaves noise alone is claimed.",
+            "(12.8 standard errors). Less than 2 % of the mismatch was left: so near the end only an effect that leaves nothing but noise is claimed.",
         ),
         (0.3, "(12.8 standard errors); claimed is what exceeds 5 % and chance."),
     ],

@@ -71,8 +71,8 @@ def test_in_words() -> None:
     told = "80 % of what it explains lies within 0 < gear_twist < 0.1 rad"
     assert where([profile], [long, short]) == f"{told}, strongest in Validation 2"
     assert where([profile], [long]) == where([profile], []) == told
-    assert where([], []) == "everywhere along the records"
-    assert where([], [long, short]) == "everywhere along the records, strongest in Validation 2"
+    assert where([], []) == "it acts throughout the recordings"
+    assert where([], [long, short]) == "it acts throughout the recordings, strongest in Validation 2"
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_a_curve_over_a_signal_of_another_port_goes_by_its_own_name() -> None:
 def test_an_interval_of_nearly_the_whole_range_is_not_told() -> None:
     """Seen: "82 % of what it explains lies within -8.49 < angle < 4.08 rad", of -8.65 to 5.9."""
     even = Profile("angle", "rad", np.linspace(-8.65, 5.9, 41), np.full(40, 1 / 40))
-    assert where((even,), ()) == "everywhere along the records"
+    assert where((even,), ()) == "it acts throughout the recordings"
     half = Profile("angle", "rad", np.linspace(-8.65, 5.9, 41), np.repeat([1 / 20, 0.0], 20))
     assert "lies within -8.65 < angle < -2.8" in where((half,), ())
 
@@ -144,7 +144,7 @@ def test_a_level_of_steps_is_told_as_one() -> None:
     levels = np.repeat([22.5, 25.0, 15.0, 30.0], 50)
     found = profile("Q1", "%", levels, np.where(levels == 22.5, 1.0, 0.0))
     assert where([found], []) == "100 % of what it explains lies where Q1 = 22.5 %"
-    assert where([profile("Q1", "%", levels, np.ones(200))], []) == "everywhere along the records"
+    assert where([profile("Q1", "%", levels, np.ones(200))], []) == "it acts throughout the recordings"
 
 
 @pytest.mark.parametrize(
