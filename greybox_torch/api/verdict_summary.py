@@ -96,6 +96,7 @@ def notes(verdict: Verdict) -> list[str]:
             *verdict.short_validation,
             *verdict.evidence,
             *verdict.at_bounds,
+            *verdict.together,
             *verdict.not_tried.sentences(),
         ]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
@@ -114,6 +115,7 @@ def notes(verdict: Verdict) -> list[str]:
         *verdict.worse_outputs,
         *small,
         *verdict.at_bounds,
+        *verdict.together,
         *stopped,
     ]
 

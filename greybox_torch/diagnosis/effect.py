@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
-from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.estimate.notes import told_law_at_bound
 from greybox_torch.mechanisms.pitch import pitch_of
 
 
@@ -175,8 +175,8 @@ class Effect:
 
     @property
     def bounded(self) -> str:
-        """Which parameters of a law are at a bound, and what that means, as of any estimate; "" elsewhere."""
-        return told_at_bound(self._at_bounds) if self._at_bounds else ""
+        """Which parameters of a law are at a bound; "" elsewhere."""
+        return told_law_at_bound(self._at_bounds) if self._at_bounds else ""
 
     @property
     def _at_bounds(self) -> str:

@@ -55,6 +55,11 @@ def told_at_bound(names: str) -> str:
     )
 
 
+def told_law_at_bound(names: str) -> str:
+    """What a reader has to know of parameters of a law of the library at their bounds, which are the law's own, without a full stop."""
+    return f"At a bound: {names}; standard deviations mean little there"
+
+
 def at_bounds(problem: Problem) -> list[str]:
     """The free parameters whose value is one of their bounds, but for rounding."""
     bounds = zip(problem.names, problem.free, problem.values, problem.lower, problem.upper, strict=True)

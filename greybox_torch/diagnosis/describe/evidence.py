@@ -139,7 +139,9 @@ def _step_sentence(done: SelectionStep, study: Study, plain: Hypothesis) -> str:
         f"{digits(100 * (1 - np.exp(-best.of_errors)))} % ({away})"
     )
     if little:
-        return f"{lowers}. {_little(settings)}: so near the end only an effect that leaves nothing but noise is claimed."
+        return (
+            f"{lowers}. {_little(settings)}: so near the end only an effect that leaves nothing but noise is claimed."
+        )
     return f"{lowers}; claimed is what exceeds {100 * least_gain(best.fitted, settings):.0f} % and chance."
 
 

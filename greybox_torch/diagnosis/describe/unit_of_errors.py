@@ -9,6 +9,8 @@ def unit_of_errors(study: Study) -> str:
     """In brackets, as the end of a sentence with such errors; nothing where the only output has no unit."""
     outputs = study.problem.model.outputs
     if len(outputs) > 1:
-        return " (each output's error is a multiple of what the model as it stands leaves in it over the shortest windows)"
+        return (
+            " (each output's error is a multiple of what the model as it stands leaves in it over the shortest windows)"
+        )
     unit = outputs[0].unit
     return f" ({unit})" if unit not in ("", "1") else ""

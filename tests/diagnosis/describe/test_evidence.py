@@ -108,7 +108,8 @@ def test_an_interval_of_a_hundred_percent_is_not_told() -> None:
     [
         (
             0.01,
-            "(12.8 standard errors). Less than 2 % of the mismatch was left: so near the end only an effect that leaves nothing but noise is claimed.",
+            "(12.8 standard errors). Less than 2 % of the mismatch was left: so near the end only "
+            "an effect that leaves nothing but noise is claimed.",
         ),
         (0.3, "(12.8 standard errors); claimed is what exceeds 5 % and chance."),
     ],
