@@ -84,7 +84,7 @@ LINE_SECONDS = 5.0
 
 def news(write: Callable[[str], None]) -> Callable[[str], None]:
     """Passes lines on to ``write``, but of the iterations of one stage a few alone: the first, one after five seconds, one after ten
-    more, one after twenty more, and so on; and the last.
+    more, one after twenty more, and so on; and the last. At the end it has to be told "".
     """
     stage, due, wait, held = "", 0.0, LINE_SECONDS, ""
 
@@ -98,6 +98,9 @@ def news(write: Callable[[str], None]) -> Callable[[str], None]:
             return
         if new and held:
             write(held)
+        if not line:
+            held = ""
+            return
         stage, wait, held = line[: at.start()] if at else "", LINE_SECONDS if new else 2.0 * wait, ""
         due = now + wait
         write(line)
@@ -114,7 +117,9 @@ def estimating() -> Iterator[Callable[[str], None]]:
     console = Console(stderr=True, highlight=False)
     write: Callable[[str], None] = lambda line: console.print(Text(line), soft_wrap=True)  # noqa: E731
     if not console.is_terminal:
-        yield news(write)
+        tell = news(write)
+        yield tell
+        tell("")
         return
     columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}")
     with Progress(*columns, console=console, transient=True) as bar:
