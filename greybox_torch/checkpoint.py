@@ -36,7 +36,8 @@ class Checkpoint:
     ``model`` is how to load the model (a built-in name, or "file.py:Class"), ``title`` its name for reports; ``values`` and ``units``
     are by parameter name, in declared order, values in those units. ``effects`` describe what is attached to its ports ([] for a
     plain model). ``free_starts`` says that every start state was estimated, whatever the model holds fixed. ``dataset`` is the
-    SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them.
+    SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them. ``own_weights`` is the SHA-256 of
+    weights that the model has beside its parameters, which are not in the checkpoint; "" of a model without any.
     """
 
     model: str
@@ -45,6 +46,7 @@ class Checkpoint:
     units: Mapping[str, str]
     effects: Sequence[Mapping[str, Any]] = ()
     free_starts: bool = False
+    own_weights: str = ""
     dataset: str = ""
     figures: Sequence[Mapping[str, Any]] = ()
     versions: Mapping[str, str] = field(default_factory=lambda: _versions())
@@ -80,6 +82,8 @@ def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | byt
     packed = save({name: np.asarray(value, dtype=np.float64) for name, value in checkpoint.values.items()})
     content = asdict(checkpoint)
     del content["values"]
+    if not checkpoint.own_weights:
+        del content["own_weights"]
     content |= {"schema": SCHEMA, "parameters": list(checkpoint.values), "tensors": hashlib.sha256(packed).hexdigest()}
     return {tensors: packed, card: json_text(content)}
 
@@ -178,6 +182,16 @@ def check_same_parameters(path: Path, checkpoint: Checkpoint, title: str, names:
         raise UserError(
             f"checkpoint {path}: holds the parameters of model {checkpoint.title}, which are not those of {title}: "
             + _differences(lacking, extra)
+        )
+
+
+def check_same_weights(path: Path, checkpoint: Checkpoint, title: str, weights: str) -> None:
+    """Raises UserError where the model has other weights of its own than that whose values the checkpoint holds; it does not hold them."""
+    if checkpoint.own_weights and checkpoint.own_weights != weights:
+        raise UserError(
+            f"checkpoint {path}: its values belong to other weights of its own than model {title} has (a network in its equations); they "
+            "are not in the checkpoint: save them with torch.save(model.state_dict(), …), and load them into the model first "
+            "(load_state_dict), in its __init__ for the command line"
         )
 
 

@@ -41,6 +41,7 @@ class CheckpointCard(BaseModel):
     versions: dict[str, str]
     created: str
     tensors: str
+    own_weights: str = ""
 
 
 def read_checkpoint_card(path: Path) -> CheckpointCard:

@@ -11,7 +11,13 @@ from typing import Any
 import numpy as np
 import torch
 
-from greybox_torch.checkpoint import Checkpoint, check_same_parameters, check_same_units, load_checkpoint
+from greybox_torch.checkpoint import (
+    Checkpoint,
+    check_same_parameters,
+    check_same_units,
+    check_same_weights,
+    load_checkpoint,
+)
 from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import with_card
@@ -19,6 +25,7 @@ from greybox_torch.mechanisms.attached import attached
 from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.model.copies import copy_holding
+from greybox_torch.model.own_weights import digest
 from greybox_torch.rates import rates_at
 from greybox_torch.systems import BUILT_IN, defined_here, load_model
 
@@ -118,6 +125,7 @@ def _saved(path: Path, checkpoint: Checkpoint, model: GreyBoxModel) -> SavedMode
     checkpoint = _with_later_parameters(checkpoint, model)
     check_same_parameters(path, checkpoint, model.title, [p.name for p in model.declared_parameters])
     check_same_units(path, checkpoint, model.title, {p.name: p.unit for p in model.plain.declared_parameters})
+    check_same_weights(path, checkpoint, model.title, digest(model))
     held = copy_holding(model, checkpoint.values, starts_free=checkpoint.free_starts)
     _check_admissible(path, held)
     return SavedModel(checkpoint, held.plain, held)

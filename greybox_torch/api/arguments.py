@@ -18,6 +18,7 @@ from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.check import check_equations
 from greybox_torch.model.once_per_model import once_per_model
+from greybox_torch.model.own_weights import with_weights_held
 from greybox_torch.systems import BUILT_IN, load_model
 
 Settings = TypeVar("Settings")
@@ -25,7 +26,7 @@ Told = TypeVar("Told")
 
 
 def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
-    """The model that was given itself, or as the result of a fit or a diagnosis.
+    """The model that was given itself, or as the result of a fit or a diagnosis; of one with weights of its own a copy that holds them.
 
     ``runs`` says whether its equations are to be computed, and not its declarations alone read.
 
@@ -37,7 +38,7 @@ def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
     if isinstance(held, GreyBoxModel):
         if runs and not isinstance(held, AugmentedModel):
             _sound_equations(held)
-        return held
+        return with_weights_held(held)
     if isinstance(model, type) and issubclass(model, GreyBoxModel):
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")

@@ -31,6 +31,7 @@ from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import in_layers, stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
+from greybox_torch.model.own_weights import digest
 from greybox_torch.report import notebook
 from greybox_torch.report.about import About
 from greybox_torch.result_names import MODEL, PRINTED, REPORT, VERDICT
@@ -205,6 +206,7 @@ class DiagnosisResult(Result):
             units=self._units,
             effects=in_layers(stored_effects(self.given), self.found.attachments),
             free_starts=True,
+            own_weights=digest(self.given),
             dataset=self.data.sha256,
             figures=self.content(Path())["fit"],
         )

@@ -8,14 +8,11 @@ from greybox_torch.api.scores import Scores
 from greybox_torch.data import DataSet
 from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
-from greybox_torch.estimate.problem import Problem, with_card
+from greybox_torch.estimate.problem import Problem
 from greybox_torch.name_lists import listed
 
 WORSE = 1.0
 """Points of the mean fit in % by which an estimate counts as worse than the values that it began with."""
-
-RAN_AWAY = 1e8
-"""Times its start value from which an estimate has run away: no card is that far off, but by a unit that is wrong."""
 
 FAR_LARGER = 2.0
 """Times the median error in the others from which an experiment's is no matter of how little moved in it."""
@@ -101,23 +98,6 @@ def lost_in_one(scores: Scores) -> str | None:
         f"Simulated no better than a constant would, and elsewhere better: {listed(told)}. A column of that experiment has another sign, "
         "unit or meaning than the card says (`greybox inspect` draws them), or something acted in it that the model lacks. All estimates "
         f"are bent by it. {DIAGNOSE}"
-    )
-
-
-def ran_away(problem: Problem, data: DataSet) -> str | None:
-    """A sentence where free parameters have ended at a hundred million times their start values or more; else None."""
-    held = problem.model.held_values()
-    begun = {p.name: held.get(p.name, p.value) for p in with_card(data, problem.model)}
-    far = [
-        f"{name} = {value:.3g} (begun with {begun[name]:.3g})"
-        for name, value in problem.values_by_name.items()
-        if name in problem.free_names and abs(value) >= RAN_AWAY * abs(begun[name]) > 0.0
-    ]
-    if not far:
-        return None
-    return (
-        f"Ran away: {listed(far)}. Nothing in these recordings holds a value there: look whether a column has the unit and scale that the "
-        "card says, give bounds on the card (upper = …), or fix what is known"
     )
 
 

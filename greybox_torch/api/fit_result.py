@@ -13,14 +13,15 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
-from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs, ran_away
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
+from greybox_torch.api.ran_away import ran_away
 from greybox_torch.api.scores import print_scores, score_table, scores_side_by_side
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
-from greybox_torch.estimate.comparison import Comparison
+from greybox_torch.estimate.comparison import Comparison, held_out_scores, mean_fit, of_moving_outputs
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.problem import with_card
@@ -29,6 +30,7 @@ from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
+from greybox_torch.model.own_weights import digest
 from greybox_torch.report import notebook
 from greybox_torch.result_names import FIT, MODEL
 from greybox_torch.systems import model_reference
@@ -93,6 +95,7 @@ class FitResult(EstimatedModel):
             "identifiability": identifiability_json(self.undetermined, self.estimation.identifiability),
             "profiles": {name: profile_json(one) for name, one in self.profiles.items()},
             "precision": self.precision,
+            **({"ran_away": self._away} if self._away is not None else {}),
             **({"question": self.question} if self.question is not None else {}),
             "dataset": self.data.name,
             "model": model_reference(self.estimation.problem.model),
@@ -142,13 +145,18 @@ class FitResult(EstimatedModel):
     def _advice(self) -> list[str]:
         """What the free runs, and parameters that ran away, say about model and card: up to four sentences."""
         problem = self.estimation.problem
-        away = ran_away(problem, self.data)
+        away = self._away
         said = fit_advice(self._scores, begun_with(problem, self.data))
         asked = None if self.question is None else f"{self.question}."
         lost = lost_outputs(self._scores)
         alone = None if said or lost else lost_in_one(self._scores)
         lines = (None if away is None else f"{away}.", said, lost, alone, asked)
         return [line for line in lines if line is not None]
+
+    @cached_property
+    def _away(self) -> str | None:
+        """That parameters or start states ran away, without a full stop."""
+        return ran_away(self.estimation, self.data, mean_fit(of_moving_outputs(held_out_scores(self._scores["refit"]))))
 
     @property
     def _given(self) -> list[str]:
@@ -168,6 +176,7 @@ class FitResult(EstimatedModel):
             units={p.name: p.unit for p in given.declared_parameters},
             effects=stored_effects(given),
             free_starts=given.starts_free,
+            own_weights=digest(given),
             dataset=self.data.sha256,
             figures=scores_side_by_side(self._scores),
         )

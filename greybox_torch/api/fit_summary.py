@@ -15,6 +15,7 @@ from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.notes import told_at_bound
 from greybox_torch.estimate.profile import LEVEL, Profile
 from greybox_torch.estimate.termination import Termination
+from greybox_torch.model.own_weights import told_held
 from greybox_torch.name_lists import brief
 from greybox_torch.report.tables import number, print_table
 
@@ -102,6 +103,8 @@ def warnings(found: Estimation, given: Collection[str] = ()) -> list[str]:
         n for n, deviation in found.parameter_deviations().items() if deviation == float("inf") and n not in elsewhere
     ]
     lines = [f"{told_at_bound(note.detail)}." for note in found.notes if note.kind is Termination.at_bound]
+    if held := told_held(found.problem.model):
+        lines.append(f"{held}.")
     if not found.problem.free.any():
         lines.append("All parameters are fixed, on the card or in the model: none is estimated.")
     if lost and all(one.kind != "numbers" for one in found.identifiability):

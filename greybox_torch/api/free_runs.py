@@ -32,6 +32,7 @@ def free_runs_json(data: DataSet, runs: Runs) -> dict[str, Any]:
             "fit": scores_json(run.comparison.scores),
             "substeps": run.substeps,
             "overflow": run.overflow,
+            "initial": run.initial,
         }
         for name, run in runs.items()
     ]

@@ -97,6 +97,7 @@ def hypothesis_files(folder: Path, result: DiagnosisResult, checkpoint: Checkpoi
             units={p.name: p.unit for p in rival.model.declared_parameters},
             effects=stored_effects(rival.model),
             free_starts=True,
+            own_weights=checkpoint.own_weights,
             dataset=checkpoint.dataset,
         )
         files |= checkpoint_files(folder / RIVALS / name, own)

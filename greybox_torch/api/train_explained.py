@@ -36,6 +36,7 @@ def explanation_json(found: Trained, explained: Explanation, scores: Scores) -> 
         "beside": list(explained.own),
         "matches": [{"mechanism": m.law.name, "share": m.share, "parameters": m.values} for m in explained.matches],
         "terms": [_term_json(term) for term in explained.terms],
+        **({"failed": list(explained.failed)} if explained.failed else {}),
     }
     if explained.term is not None and explained.result is not None:
         start = f"{explained.term.attachment.prefix}."
@@ -97,6 +98,8 @@ def _not_refitted(match: Match, explained: Explanation) -> str:
     """Why a law has no held-out error."""
     if not explained.refitted:
         return ""
+    if match.law.name in explained.failed:
+        return "put there: its simulation overflows"
     return (
         f"not put there: matches less than {LEAST_MATCH:g}"
         if match.share <= LEAST_MATCH

@@ -30,6 +30,7 @@ from greybox_torch.files import json_text
 from greybox_torch.mechanisms.stored import stored_effects
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.copies import copy_holding
+from greybox_torch.model.own_weights import digest
 from greybox_torch.report import notebook
 from greybox_torch.result_names import MODEL, TRAINED
 from greybox_torch.systems import model_reference
@@ -174,6 +175,7 @@ class TrainingResult(EstimatedModel):
             units={p.name: p.unit for p in problem.model.declared_parameters},
             effects=stored_effects(problem.model),
             free_starts=True,
+            own_weights=digest(self.given),
             dataset=self.data.sha256,
             figures=scores_side_by_side(self._scores),
         )

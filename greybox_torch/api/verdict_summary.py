@@ -96,6 +96,7 @@ def notes(verdict: Verdict) -> list[str]:
             *verdict.short_validation,
             *verdict.evidence,
             *verdict.at_bounds,
+            *verdict.together,
             *verdict.not_tried.sentences(),
         ]
     stopped = [] if verdict.complete else [STOPPED, *verdict.not_tried.sentences()]
@@ -114,6 +115,7 @@ def notes(verdict: Verdict) -> list[str]:
         *verdict.worse_outputs,
         *small,
         *verdict.at_bounds,
+        *verdict.together,
         *stopped,
     ]
 
@@ -148,7 +150,7 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
-    lines += [f"{head}: {effect.of_units}"] if effect.of_units else []
+    lines += [f"{head}: {told}" for told in (effect.of_units, effect.like) if told]
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     together = () if effect.one_of is None else effect.one_of.members

@@ -77,31 +77,35 @@ def _findings(console: Console, first: str) -> Callable[[Standing], None]:
 
 
 _ITERATION = re.compile(r", iteration \d+:")
-_LAST_NUMBER = re.compile(r"\d+(\.\d+(e[+-]?\d+)?|e[+-]?\d+)$")
 
 LINE_SECONDS = 5.0
-"""Time between two lines on the course of a computation that say nothing else new."""
+"""Time between two lines on the course of a computation that say nothing else new, or until the second of them."""
 
 
 def news(write: Callable[[str], None]) -> Callable[[str], None]:
-    """Passes lines on to ``write``, but for those that differ from the last in the number of the iteration, or behind the third digit of
-    the number that they end in, alone: one every few seconds.
+    """Passes lines on to ``write``, but of the iterations of one stage a few alone: the first, one after five seconds, one after ten
+    more, one after twenty more, and so on; and the last. At the end it has to be told "".
     """
-    before, due = "", 0.0
+    stage, due, wait, held = "", 0.0, LINE_SECONDS, ""
 
     def tell(line: str) -> None:
-        nonlocal before, due
-        said, now = _LAST_NUMBER.sub(_in_short, _ITERATION.sub("", line)), time.perf_counter()
-        if said == before and now < due:
+        nonlocal stage, due, wait, held
+        now = time.perf_counter()
+        at = _ITERATION.search(line)
+        new = at is None or line[: at.start()] != stage
+        if not new and now < due:
+            held = line
             return
-        before, due = said, now + LINE_SECONDS
+        if new and held:
+            write(held)
+        if not line:
+            held = ""
+            return
+        stage, wait, held = line[: at.start()] if at else "", LINE_SECONDS if new else 2.0 * wait, ""
+        due = now + wait
         write(line)
 
     return tell
-
-
-def _in_short(number: re.Match[str]) -> str:
-    return f"{float(number[0]):.3g}"
 
 
 @contextmanager
@@ -113,7 +117,9 @@ def estimating() -> Iterator[Callable[[str], None]]:
     console = Console(stderr=True, highlight=False)
     write: Callable[[str], None] = lambda line: console.print(Text(line), soft_wrap=True)  # noqa: E731
     if not console.is_terminal:
-        yield news(write)
+        tell = news(write)
+        yield tell
+        tell("")
         return
     columns = SpinnerColumn(), TimeElapsedColumn(), TextColumn("{task.description}")
     with Progress(*columns, console=console, transient=True) as bar:

@@ -20,15 +20,25 @@ def own_at_bounds(
         estimates: the name of each, its unit, its value in the one and in the other, and whether these are at a bound.
         effects: whether there is a model with effects.
     """
-    told = []
+    told, beside = [], []
     for name, unit, *values, at_bound in estimates:
         refit, augmented = (
             with_value(name, v[0], unit) if v and at else "" for v, at in zip(values, at_bound, strict=True)
         )
-        if not effects or refit == augmented:
+        beside += (
+            [name] if effects and augmented and values[1] and values[1][0] != 0.0 else []
+        )  # zero is a limit of physics
+        if not effects:
             told.append(refit)
+        elif refit == augmented:
+            told.append(refit and f"{refit} (without and with the effects)")
         else:
             told.append(refit and f"{refit} (without the effects)")
             told.append(augmented and f"{augmented} (with the effects)")
     named = listed([one for one in told if one])
-    return (f"{told_at_bound(named)}.",) if named else ()
+    if not named:
+        return ()
+    if not beside:
+        return (f"{told_at_bound(named)}.",)
+    hold = f"With the effects {listed(beside)} may go no further: if the truth lies beyond, effects and refinements make up for it"
+    return (f"{told_at_bound(named)}. {hold}, and their values are wrong.",)

@@ -13,7 +13,7 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
-from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.estimate.notes import told_law_at_bound
 from greybox_torch.mechanisms.pitch import pitch_of
 
 SO_LITTLE = "so little that it may only compensate for the inexact form of the other laws"
@@ -141,6 +141,8 @@ class Effect:
 
     of_units: str = ""
     """That a gain is the factor of a unit that the model's equations may lack, or why there are none, a clause; "" elsewhere."""
+    like: str = ""
+    """Which other effects are the same force in the one direction of motion that the recordings show, a clause; "" for none."""
 
     limited: tuple[str, ...] = ()
     """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
@@ -181,8 +183,8 @@ class Effect:
 
     @property
     def bounded(self) -> str:
-        """Which parameters of a law are at a bound, and what that means, as of any estimate; "" elsewhere."""
-        return told_at_bound(self._at_bounds) if self._at_bounds else ""
+        """Which parameters of a law are at a bound; "" elsewhere."""
+        return told_law_at_bound(self._at_bounds) if self._at_bounds else ""
 
     @property
     def _at_bounds(self) -> str:
@@ -193,7 +195,7 @@ class Effect:
         """What a reader of the evidence has to know of its parameters and its probability; clauses."""
         # What a bound means is told beside the parameters.
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        return tuple(filter(None, (self.of_units, bounded, *self.limited)))
+        return tuple(filter(None, (self.of_units, self.like, bounded, *self.limited)))
 
     @property
     def headline(self) -> str:

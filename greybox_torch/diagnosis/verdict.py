@@ -13,6 +13,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.of_no_use import of_no_use
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.own_parameters import Estimate, determined_together
 from greybox_torch.diagnosis.parts import about_sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
 from greybox_torch.diagnosis.traces import InputTrace, Trace
@@ -73,21 +74,6 @@ class NotTried:
             "stages": list(self.stages),
             "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],
         }
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A free parameter of the model, in ``unit``: as the card has it, re-estimated, and with the effects (None where there are none).
-
-    Standard deviations are None where they are not known. ``at_bound``: whether the two estimates are at a bound of the parameter.
-    """
-
-    name: str
-    unit: str
-    start: float
-    refit: tuple[float, float | None]
-    augmented: tuple[float, float | None] | None
-    at_bound: tuple[bool, bool] = (False, False)
 
 
 @dataclass(frozen=True)
@@ -197,6 +183,11 @@ class Verdict:
         told = [(e.name, e.unit, e.refit, e.augmented, e.at_bound) for e in self.parameters]
         return own_at_bounds(told, bool(self.effects))
 
+    @property
+    def together(self) -> tuple[str, ...]:
+        """A sentence where free parameters of the model itself are determined together alone."""
+        return determined_together(self.parameters)
+
     def counted(self, model: str) -> tuple[Score, ...]:
         """The scores of a model ("start", "refit", "augmented") but for those on experiments that do not count (``unstable``)."""
         return tuple(s for s in self.scores[model] if s.experiment not in self.unstable)
@@ -242,7 +233,11 @@ class Verdict:
             **({"unstable": sorted(self.unstable)} if self.unstable else {}),
             **({"question": self.question} if self.question else {}),
             "evidence": list(self.evidence),
-            **{n: list(told) for n in ("at_bounds", "worse_outputs", "short_validation") if (told := getattr(self, n))},
+            **{
+                n: list(told)
+                for n in ("at_bounds", "together", "worse_outputs", "short_validation")
+                if (told := getattr(self, n))
+            },
             "stages": dict(self.stages),
             "not_tried": self.not_tried.as_json(),
             "settings": changed_settings(self.settings, self.budget),

@@ -44,7 +44,7 @@ def _with_bound(name: str, unit: str, value: float, lower: float, upper: float) 
 
 
 def told_at_bound(names: str) -> str:
-    """What a reader has to know of parameters at their bounds, one sentence and another, without a full stop.
+    """What a reader has to know of parameters at their bounds, without a full stop.
 
     Args:
         names: the parameters, with the bounds that they are at.
@@ -53,6 +53,11 @@ def told_at_bound(names: str) -> str:
         f"At a bound: {names}; the standard deviations there mean little. Where the machine has no such limit, the model lacks something, "
         "or the recordings do not tell the parameter from others"
     )
+
+
+def told_law_at_bound(names: str) -> str:
+    """What a reader has to know of parameters of a law of the library at their bounds, which are the law's own, without a full stop."""
+    return f"At a bound: {names}; standard deviations mean little there"
 
 
 def at_bounds(problem: Problem) -> list[str]:

@@ -52,7 +52,8 @@ class Profile:
     variances and divided by ``colour``, so that ``THRESHOLD`` is its 95 % level. ``colour`` is the ratio of the estimate's variance that
     allows for coloured residuals to the plain one, 1 for white ones. ``lower`` and ``upper`` end the 95 % interval, infinite where the
     rise did not reach that level; ``lower_bound`` and ``upper_bound`` say whether a bound of the parameter ended the search there.
-    ``deviation`` is the standard deviation that allows for coloured residuals.
+    ``deviation`` is the standard deviation that allows for coloured residuals. Where the cost falls by that level on the way, the estimate
+    is no optimum, and there is no interval around it: both ends are infinite.
     """
 
     name: str
@@ -68,8 +69,20 @@ class Profile:
     upper_bound: bool
 
     @property
+    def better(self) -> float | None:
+        """The value of the lowest cost, where that lies below the estimate's by more than the level of an interval; else None."""
+        return float(self.values[np.argmin(self.rise)]) if self.rise.min() < -THRESHOLD else None
+
+    @property
     def sentence(self) -> str:
         """The interval in words."""
+        if self.better is not None:
+            there, here = (in_unit(f"{value:.5g}", self.unit) for value in (self.better, self.estimate))
+            return (
+                f"{self.name}: no interval: the estimate of {here} is no optimum, at {there} the cost is {-self.rise.min():.3g} error "
+                "variances lower. The estimate is kept: fit again from there "
+                f"({self.name} = {{ value = {self.better:.5g} }} in [model.parameters])"
+            )
         low, high = (in_unit(f"{end:.5g}", self.unit) for end in (self.lower, self.upper))
         ends = [self.values[0], self.values[-1]]
         reached = [np.isfinite(self.lower), np.isfinite(self.upper)]
@@ -125,6 +138,8 @@ def profile(found: Estimation, simulator: Simulator, name: str, *, settings: Set
     middle = [(float(start[index]), 0.0)]
     low, high = _crossing(middle + sides[0]), _crossing(middle + sides[1])
     rows = np.array([*reversed(sides[0]), *middle, *sides[1]])
+    if rows[:, 1].min() < -THRESHOLD:
+        low = high = None
     unit = next(p.unit for p in found.problem.model.declared_parameters if p.name == name)
     return Profile(
         name=name,

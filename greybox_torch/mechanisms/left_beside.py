@@ -41,6 +41,11 @@ class LeftBeside:
         left, whole = (float((part**2).sum()) for part in (self.by(force), self.root * force))
         return 1.0 - float((lacking**2).sum()) / left if left > ROUNDING * whole else 0.0
 
+    def columns(self, forces: np.ndarray) -> np.ndarray:
+        """What they leave of forces (N, m), weighted; zero of one of which that is rounding, so that it has no size beside."""
+        left, whole = self.by(forces), self.root[:, None] * forces
+        return np.where((left**2).sum(axis=0) > ROUNDING * (whole**2).sum(axis=0), left, 0.0)
+
     def by(self, forces: np.ndarray) -> np.ndarray:
         """What they leave of forces (N,) or (N, m), weighted."""
         weighted = forces * (self.root if forces.ndim == 1 else self.root[:, None])

@@ -97,7 +97,7 @@ def _trials(
     results, bounds = [], {p.name: p.bounds for p in law.parameters(around)}
     target = left.by(force)
     for probe in law.probes(around):
-        columns = left.by(force_columns(law, around, signals, probe))
+        columns = left.columns(force_columns(law, around, signals, probe))
         size = linear_least_squares(columns, target, rcond=1e-10)
         size = np.array([np.clip(v, *bounds[n]) for n, v in zip(probe.directions, size, strict=True)])
         share = left.share_of(force, target - columns @ size)

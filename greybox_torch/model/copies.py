@@ -9,6 +9,7 @@ from typing import Any
 
 from greybox_torch.model.declarations import Parameter
 from greybox_torch.model.greybox_model import GreyBoxModel
+from greybox_torch.model.own_weights import let_go
 
 
 def copy_holding(
@@ -26,6 +27,7 @@ def copy_holding(
         starts_free: whether the copy's start states are all estimated, see :attr:`GreyBoxModel.starts_free`.
     """
     made = deepcopy(model)
+    let_go(made)
     replaced = {p.name: p for p in declared}
     part: Any = made
     while part is not None:

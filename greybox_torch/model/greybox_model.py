@@ -20,6 +20,8 @@ from greybox_torch.model.stacked import spread, stacked
 from greybox_torch.model.summary import summary
 from greybox_torch.model.unseen_states import unseen_states
 
+NO_LIST = "'parameters' of a model is torch's method, not its list; expected [*Other.declared_parameters] for those of another model"
+
 
 class GreyBoxModel(torch.nn.Module):
     """A physical model dx/dt = f(x, u, p), y = g(x, u, p) with named, constrained, learnable parameters.
@@ -58,8 +60,14 @@ class GreyBoxModel(torch.nn.Module):
         if isinstance(declared, list | tuple):
             cls.declared_parameters = tuple(declared)
             del cls.parameters
+        elif declared is torch.nn.Module.parameters:
+            raise UserError(f"model {cls.__name__}: {NO_LIST}")
 
-    def __init__(self) -> None:
+    def __init__(self, *given: Any, **values: Any) -> None:
+        if given or values:
+            raise UserError(
+                f"{type(self).__name__}() takes no values; expected them in set_values({{name: value}}) of the model made"
+            )
         super().__init__()
         self._check_declarations()
         self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}

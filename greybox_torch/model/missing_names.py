@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import torch
 
 from greybox_torch.errors import did_you_mean
+from greybox_torch.model.own_weights import not_double
 
 if TYPE_CHECKING:
     from greybox_torch.model.greybox_model import GreyBoxModel
@@ -25,6 +26,8 @@ def advice_for(model: GreyBoxModel, error: Exception) -> str:
         return f"; expected a module that is installed here; or {_OF_TORCH}"
     if isinstance(error, AttributeError) and (missing := _ATTRIBUTE.search(str(error))):
         return f"; expected a function of torch{did_you_mean(missing[1], dir(torch))}"
+    if "dtype" in str(error):
+        return not_double(model)
     return f"; expected {_OF_TORCH}" if "numpy" in str(error) else ""
 
 

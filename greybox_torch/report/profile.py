@@ -13,15 +13,20 @@ from greybox_torch.report.style import STYLE, dots_within, with_unit
 
 
 def plot_profile(found: Profile, title: str) -> Figure:
-    """The profile as computed, the parabola that its standard deviation stands for, and the interval in which it keeps below the level."""
+    """The profile as computed, the parabola that its standard deviation stands for, and the interval in which it keeps below the level;
+    where the estimate is no optimum, the value of the lowest cost in the interval's place.
+    """
     height = 3.6
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(6.0, height), dpi=dots_within(height), layout="constrained")
         axes = figure.subplots()
         axes.set_title(title, fontweight="bold")
-        low, high = max(found.lower, found.values[0]), min(found.upper, found.values[-1])
-        axes.axvspan(low, high, color="tab:green", alpha=0.15, linewidth=0, label="95 % interval")
-        axes.axhline(THRESHOLD, color="tab:green", linewidth=1.0, label="95 % level")
+        if found.better is None:
+            low, high = max(found.lower, found.values[0]), min(found.upper, found.values[-1])
+            axes.axvspan(low, high, color="tab:green", alpha=0.15, linewidth=0, label="95 % interval")
+            axes.axhline(THRESHOLD, color="tab:green", linewidth=1.0, label="95 % level")
+        else:
+            axes.axvline(found.better, color="tab:green", linewidth=1.0, label="lower cost: no interval")
         if 0 < found.deviation < np.inf:
             values = np.linspace(found.values[0], found.values[-1], 200)
             parabola = ((values - found.estimate) / found.deviation) ** 2
@@ -32,7 +37,7 @@ def plot_profile(found: Profile, title: str) -> Figure:
         axes.set_xlabel(with_unit(found.name, found.unit))
         axes.set_ylabel("rise of the cost [error variances]")
         axes.set_ylim(min(-0.3, 1.1 * float(found.rise.min())), 1.15 * max(float(found.rise.max()), THRESHOLD))
-        axes.legend(loc="upper center", fontsize=8)
+        figure.legend(loc="outside lower center", ncols=3, fontsize=8)
     return figure
 
 

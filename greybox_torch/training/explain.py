@@ -23,6 +23,7 @@ from greybox_torch.mechanisms.matching import (
 )
 from greybox_torch.mechanisms.memory_net import MemoryNet
 from greybox_torch.model import Coupling
+from greybox_torch.name_lists import listed
 from greybox_torch.training.hybrid import port_named
 from greybox_torch.training.learned_force import LearnedForce, SignalCurve, curves_of, force_at, learned_force
 from greybox_torch.training.named_term import NamedTerm, on_all_samples, refitted_term
@@ -41,9 +42,9 @@ class Explanation:
     ``curves`` over each of its signals, with their shares; ``members`` how many trainings the band is from: of one it is the parameters'
     covariance alone, of several what they differ by is added. ``matches`` compares every law of the library that depends on these
     signals alone with what the model's ``own`` parameters, which act where the network does, leave of the learned force; ``terms`` are the
-    best of them in the network's place, best on held-out stretches first, ``refitted`` says whether any were asked there.
-    ``memories`` are the time constants, in s, of a network with hidden states, which no curve stands for.
-    ``term`` is the one that makes the network needless, estimated on all samples as ``result``; None where none does.
+    best of them in the network's place, best on held-out stretches first, ``refitted`` says whether any were asked there, and
+    ``failed`` names those that cannot be simulated there. ``memories`` are the time constants, in s, of a network with hidden states, which
+    no curve stands for. ``term`` is the one that makes the network needless, estimated on all samples as ``result``; None where none does.
     """
 
     curves: tuple[SignalCurve, ...] = ()
@@ -55,6 +56,7 @@ class Explanation:
     memories: tuple[float, ...] = ()
     own: tuple[str, ...] = ()
     refitted: bool = True
+    failed: tuple[str, ...] = ()
 
     @property
     def sentence(self) -> str:
@@ -75,7 +77,7 @@ class Explanation:
             best = present[0]
             return (
                 f"No law that was put in the network's place does what it does: with the closest, {best.attachment.prefix}, the mean "
-                f"squared error on the held-out stretches is {_told(best.lost)}. {KEEP}"
+                f"squared error on the held-out stretches is {_told(best.lost)}.{self._unjudged} {KEEP}"
             )
         nearest = next(iter(worth_a_refit(self.matches)), None)
         if nearest is not None and not self.refitted:
@@ -84,6 +86,13 @@ class Explanation:
                 "it. Whether one does what the network does is not known before it is put in its place (`refit`)."
             )
         return f"No law of the library without memory comes near to what the network has learned. {KEEP}"
+
+    @property
+    def _unjudged(self) -> str:
+        """A sentence, behind a space, on laws that were put in the network's place and could not be judged; "" for none."""
+        if not self.failed:
+            return ""
+        return f" Nothing is known of {listed(self.failed)}: with the values that match the curve the simulation overflows."
 
 
 def explain(
@@ -120,12 +129,12 @@ def explain(
     curves = curves_of(members, found.hybrid.surroundings[network.port].units)
     own = own_parameters(found, first.signals)
     matches = tuple(_matches(found, first, own))
-    terms = _terms(found, matches, first, own, told) if refit else ()
+    terms, failed = _terms(found, matches, first, own, told) if refit else ((), ())
     term = needless(terms, found)
     if term is not None:
         told(f"explaining: {term.attachment.prefix} on all samples")
     result = None if term is None else on_all_samples(term, found)
-    return Explanation(curves, len(members), matches, terms, term, result, own=own.names, refitted=refit)
+    return Explanation(curves, len(members), matches, terms, term, result, own=own.names, refitted=refit, failed=failed)
 
 
 def _memories(found: Trained) -> tuple[float, ...]:
@@ -164,8 +173,9 @@ def _matches(found: Trained, learned: LearnedForce, own: OwnParameters) -> list[
 
 def _terms(
     found: Trained, matches: Sequence[Match], learned: LearnedForce, own: OwnParameters, told: Callable[[str], None]
-) -> tuple[NamedTerm, ...]:
-    """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first.
+) -> tuple[tuple[NamedTerm, ...], tuple[str, ...]]:
+    """The laws that come near the curve, and the kinematic ones of its signals, in the network's place; best first. And the names of those
+    that cannot be simulated there.
 
     Each begins with the model's own parameters where they do what the law leaves of the learned force.
     """
@@ -179,13 +189,16 @@ def _terms(
         moved = own.taking_over(learned.force - law_force(m.law, around, signals, m.values))
         candidates.append((attach(physics.model, network.port, m.law), [m.values], m.share, moved))
     candidates += [(attachment, sizes, None, {}) for attachment, sizes in _kinematic(found)]
-    terms = []
+    terms, failed = [], []
     for attachment, sizes, share, moved in candidates:
         told(f"explaining: {attachment.prefix} instead of the network")
         starts = [{**beside, **moved, **{f"{attachment.prefix}.{n}": v for n, v in values.items()}} for values in sizes]
         term = refitted_term(found, attachment, starts, share)
-        terms += [] if term is None else [term]
-    return tuple(sorted(terms, key=lambda term: term.held_out))
+        if term is None:
+            failed.append(attachment.mechanism.name)
+        else:
+            terms.append(term)
+    return tuple(sorted(terms, key=lambda term: term.held_out)), tuple(failed)
 
 
 def _kinematic(found: Trained) -> list[tuple[Attachment, list[dict[str, float]]]]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs, ran_away
+from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.problem import make_problem
 from tests.api.motor import Motor
@@ -95,17 +93,6 @@ def test_an_output_that_is_lost_in_one_experiment_is_told() -> None:
     assert of(("lauf1", -10.0, 4.6), *others) is None, "as large an error as elsewhere: little moved there"
     assert of(("lauf1", -119.7, 12.4), ("lauf3", -50.0, 3.9)) is None, "lost everywhere"
     assert of(("lauf1", -119.7, 12.4), *others, role="validation") is None, "what is lost in validation is judged there"
-
-
-def test_parameters_that_ran_away_are_told() -> None:
-    """Seen: a parameter of 1e+87 in the table, without a word."""
-    (data,) = motors(1)
-    own = gt.DataSet(data.recordings, parameters={"J": {"value": 0.02}})
-    problem = make_problem(own, Motor(), own.estimation())
-    assert ran_away(problem, own) is None
-    k = problem.names.index("J")
-    away = ran_away(replace(problem, values=np.where(np.arange(len(problem.names)) == k, 1e87, problem.values)), own)
-    assert away is not None and away.startswith("Ran away: J = 1e+87 (begun with 0.02)")
 
 
 def test_where_the_start_values_came_from_is_named() -> None:

@@ -8,8 +8,9 @@ import pytest
 
 from greybox_torch.api.verdict_summary import REFIT, SIZE, effect_table, moved_table, notes, which_refit
 from greybox_torch.diagnosis.one_of import DECIDED_BY, Alternative, OneOf
-from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Estimate, Left, NotTried
-from greybox_torch.estimate.notes import told_at_bound
+from greybox_torch.diagnosis.own_parameters import Estimate
+from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Left, NotTried
+from greybox_torch.estimate.notes import told_at_bound, told_law_at_bound
 from greybox_torch.report.sections.effects import Effects
 from greybox_torch.report.sections.headline import Headline
 from tests.diagnosis.test_verdict import BACKLASH, verdict
@@ -69,9 +70,9 @@ def test_a_parameter_of_a_law_at_its_bound_is_told_as_fit_tells_it() -> None:
     entry = {"value": 1.0, "std": 0.088, "unit": "", "description": ""}
     effect = replace(BACKLASH, parameters={"sharpness": entry}, at_bounds=("sharpness",))
     (told,) = [line for line in notes(verdict(effect)) if "bound" in line]
-    assert told == f"backlash at gear_spring: {told_at_bound('sharpness = 1')}"
+    assert told == f"backlash at gear_spring: {told_law_at_bound('sharpness = 1')}"
     shown = Effects.of(verdict(effect))
-    assert shown is not None and shown.cards[0].bounded == told_at_bound("sharpness = 1")
+    assert shown is not None and shown.cards[0].bounded == told_law_at_bound("sharpness = 1")
     assert not [line for line in notes(verdict(replace(effect, mechanism="unknown"))) if "At a bound" in line]
     assert effect.remarks == ("at a bound: sharpness = 1",), "seen: both sentences once more in the evidence"
     zero = replace(effect, parameters={"sharpness": {**entry, "value": 0.0}})
@@ -203,5 +204,26 @@ def test_the_models_own_parameters_at_a_bound_are_told() -> None:
     told = f"{told_at_bound('b = 0 N s/m (with the effects) and T = 0.005 s (without the effects)')}."
     assert told in notes(found) and found.as_json()["at_bounds"] == [told]
     assert f"{told_at_bound('T = 0.005 s')}." in notes(without) and "at_bounds" not in verdict().as_json()
+    at_card = replace(found, parameters=(Estimate("M", "kg", 5000.0, (5500.0, 2.0), (5500.0, 1.0), (True, True)),))
+    (told,) = at_card.at_bounds  # seen: "M = 5500 kg and b_v = 0 N s/m (without the effects)", of a mass of 6000 kg
+    assert told.startswith("At a bound: M = 5500 kg (without and with the effects);")
+    assert (
+        "With the effects M may go no further: if the truth lies beyond, effects and refinements make up for it" in told
+    )
     small = replace(BACKLASH, parameters={"sharpness": {"value": 9.0}}, at_bounds=("sharpness",))
-    assert any(told_at_bound("sharpness = 9") in line for line in notes(replace(found, refinements=(small,))))
+    assert any(told_law_at_bound("sharpness = 9") in line for line in notes(replace(found, refinements=(small,))))
+
+
+def test_parameters_that_are_determined_together_alone_are_told() -> None:
+    """Seen: b_v = 0 at its bound and b_m four times its start value, ± 2.6, of which only the sum is determined, without a word."""
+    own = (
+        Estimate("b_m", "N m s/rad", 0.05, (0.1, 0.1), (0.209, 2.6), together={"b_v": -0.998}),
+        Estimate("b_v", "N s/m", 500.0, (0.0, 9.0), (400.0, 9.0), together={"b_m": -0.998}),
+        Estimate("M", "kg", 5000.0, (5500.0, 2.0), (5500.0, 1.0), together={"d": 0.99}),
+        Estimate("d", "N m s/rad", 600.0, (800.0, 2.0), (800.0, 1.0), together={"M": 0.99}),
+    )
+    found = replace(verdict(BACKLASH), parameters=own)
+    (told,) = found.together
+    assert told.startswith("Determined only together (correlation of the estimates): b_m and b_v -0.998. What one has")
+    assert told in notes(found) and found.as_json()["together"] == [told]
+    assert "together" not in replace(found, parameters=own[2:]).as_json()

@@ -74,7 +74,7 @@ def test_summary(motor_folder: Make, edit: Edit) -> None:
     assert sum(line.endswith(" (rad/s)^2") for line in lines) == 2
     assert any(line.startswith("Sweep validation speed") for line in lines)
     assert "iteration 1: mean squared error" in result.stderr
-    assert "iteration 2: mean squared error" in result.stderr
+    assert result.stderr.count("iteration") == 2, "the first and the last"
 
 
 def test_checkpoint(motor_folder: Make) -> None:

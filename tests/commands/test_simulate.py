@@ -26,6 +26,8 @@ def test_simulate(motor_folder: Make) -> None:
         ("More steps", "estimation", "speed"),
         ("Sweep", "validation", "speed"),
     ]
+    assert list(model["initial"]) == ["Steps", "More steps", "Sweep"]  # with which an exported model does the same
+    assert all(list(states) == ["speed"] for states in model["initial"].values())
     assert [Path(p).name for p in found["tables"]] == [
         "simulated_1_steps.csv",
         "simulated_2_more_steps.csv",

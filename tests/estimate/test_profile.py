@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.fit import Estimation, fit_records
+from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.profile import THRESHOLD, Profile, check_profiled, profile
@@ -112,3 +114,20 @@ def test_names_that_cannot_be_profiled(name: str, expected: str) -> None:
 def test_figure(line: Any, tmp_path: Path) -> None:
     plot_profile(of(line(), "a"), "profile of a").savefig(tmp_path / "profile.png")
     assert (tmp_path / "profile.png").stat().st_size > 5000
+
+
+def test_an_estimate_that_is_no_optimum_has_no_interval(line: Any) -> None:
+    """Seen: "up to 805" around an estimate whose cost lay 590 above that at 0, shaded as its 95 % interval."""
+    found = line()
+    problem = found.problem.with_values(np.array([1.0, 1.0]))
+    run = FreeRun(problem, Simulator.of(problem.model, problem.free_names))
+    at_start = run.quadratic(run.start)
+    assert at_start is not None
+    away = replace(found, problem=problem, mse=2 * at_start.cost / found.samples)
+    profiled = of(away, "a")
+    assert profiled.better is not None and profiled.rise.min() < -THRESHOLD
+    assert (profiled.lower, profiled.upper) == (-np.inf, np.inf)
+    assert profiled.sentence.startswith("a: no interval: the estimate of 1 rad/s/V is no optimum, at ")
+    assert f"a = {{ value = {profiled.better:.5g} }}" in profiled.sentence
+    labels = [text.get_text() for text in plot_profile(profiled, "").legends[0].get_texts()]
+    assert "95 % interval" not in labels and "lower cost: no interval" in labels

@@ -98,6 +98,16 @@ def test_a_force_beside_is_left_out_of_the_comparison() -> None:
     assert beside.values["c"] == pytest.approx(0.3)
 
 
+def test_a_part_of_a_law_that_acts_beside_has_no_size() -> None:
+    """Seen: Stribeck friction with c = 9.2e9 N/(m/s) beside the model's own b_v, whose simulation overflowed: it was the true law."""
+    values = {"F_c": 0.8, "F_s": 0.4, "v_s": 0.5, "v_0": 0.05}
+    force = law_force(LIBRARY["stribeck_friction"](), AROUND, {"speed": SPEED}, values)
+    speed = SPEED.numpy()[:, None] * (1.0 + 1e-10 * np.sin(np.arange(201.0)))[:, None]  # but for rounding
+    found = {m.law.name: m for m in matching_laws("body", AROUND, {"speed": SPEED}, force, EVENLY, beside=speed)}
+    best = found["stribeck_friction"]
+    assert best.values["c"] == 0.0 and 0.7 < best.values["F_c"] < 0.9 and best.share > 0.99
+
+
 def test_of_rounding_no_law_matches_a_share() -> None:
     """Where what acts beside can be all of the force, nothing is left for a law."""
     force = np.exp(SPEED.numpy() / 3.0)

@@ -67,6 +67,24 @@ def test_parameters_stay_a_method_of_the_module() -> None:
     assert list(tank.state_dict()) == ["raw.area"]
 
 
+def test_the_parameters_of_another_model_are_declared_parameters() -> None:
+    """Seen: "p.Kv: no parameter has this name; declared are: none", six times."""
+    with pytest.raises(UserError, match=r"model Mine: 'parameters' .* expected \[\*Other.declared_parameters\]"):
+
+        class Mine(GreyBoxModel):
+            parameters = GreyBoxModel.parameters
+
+
+def test_values_are_not_given_to_the_class() -> None:
+    """Seen: a bare TypeError of `Press(b=3)`."""
+
+    class Mine(GreyBoxModel):
+        states, outputs, parameters = [State("x")], [Output("x")], [Parameter("b", 1.0)]
+
+    with pytest.raises(UserError, match=r"^Mine\(\) takes no values; expected them in set_values"):
+        Mine(b=3.0)
+
+
 def test_a_subclass_inherits_the_parameters() -> None:
     class Taller(Tank):
         states = [State("level", "m", initial=3.0)]

@@ -11,8 +11,9 @@ import numpy as np
 from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.effect import FreeCurve
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
+from greybox_torch.diagnosis.own_parameters import Estimate
 from greybox_torch.diagnosis.traces import InputTrace
-from greybox_torch.diagnosis.verdict import Estimate, Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 from tests.browser import after_scripts, needs_browser

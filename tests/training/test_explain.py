@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.api.train_explained import open_sign
+from greybox_torch.api.train_explained import _not_refitted, open_sign
 from greybox_torch.errors import UserError
 from greybox_torch.training import Trained, TrainingSettings, fit_physics, train_hybrid
 from greybox_torch.training.explain import Explanation, explain, needless
@@ -140,6 +140,15 @@ def test_hybrid_of_an_augmented_model(drag_data, law: Explanation) -> None:
     assert found.physics is physics.result
     assert np.abs(found.force(speed=np.linspace(-3, 3, 9))).max() < 0.01
     assert torch.is_tensor(augmented.base.raw["b"])
+
+
+def test_a_law_that_cannot_be_simulated_is_told(law: Explanation) -> None:
+    """Seen: "not put there: others match more" of a law of 99 %, which had been put there, beside one of 90 %."""
+    without = tuple(term for term in law.terms if term.attachment.mechanism.name != "quadratic_drag")
+    failed = replace(law, terms=without, term=None, failed=("quadratic_drag",))
+    drag = next(m for m in law.matches if m.law.name == "quadratic_drag")
+    assert _not_refitted(drag, failed) == "put there: its simulation overflows"
+    assert "Nothing is known of quadratic_drag: with the values that match the curve" in failed.sentence or not without
 
 
 def test_a_law_without_its_effect_is_not_the_closest(law: Explanation, of_a_law: Trained) -> None:

@@ -16,6 +16,7 @@ from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
+from greybox_torch.diagnosis.describe.one_direction import with_likes
 from greybox_torch.diagnosis.describe.profiles import (
     explained_energy,
     local_signals,
@@ -76,12 +77,13 @@ def describe(
         sizes: by effect, the share of the whole mismatch that it accounts for.
         removed: the share of the validation error beyond the noise that they remove together.
     """
-    return tuple(
+    told = tuple(
         _effect(
             study, state, final, left, e, _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix))
         )
         for e, part in zip(state.effects, _parts(state), strict=True)
     )
+    return with_likes(state.current, told, final.problem)
 
 
 def _parts(state: SearchState) -> list[float]:
@@ -183,13 +185,12 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
 def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
     values, deviations = final.values(), final.deviations()
     start = f"{attachment.prefix}."
-    units = {p.name: p.unit for p in model.declared_parameters}
-    result = {}
-    for name in units:
-        if name.startswith(start):
+    result: dict[str, dict[str, Any]] = {}
+    for one in model.declared_parameters:
+        if one.name.startswith(start):
             # infinite where the recordings do not determine it; None where it was not estimated, or whole records were not fitted
-            own = {"value": values[name], "std": deviations.get(name), "unit": units[name]}
-            result[name.removeprefix(start)] = own
+            own = {"value": values[one.name], "std": deviations.get(one.name), "unit": one.unit}
+            result[one.name.removeprefix(start)] = own | ({"description": one.description} if one.description else {})
     return result
 
 

@@ -12,12 +12,14 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import too_few_windows
 from greybox_torch.diagnosis.one_of import spoken_at
+from greybox_torch.diagnosis.own_parameters import Estimate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.traces import InputTrace, Trace
-from greybox_torch.diagnosis.verdict import Estimate
+from greybox_torch.estimate.correlation import correlation_matrix
 from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.estimate.short_validation import short_validation
 from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
@@ -103,12 +105,26 @@ def parameters(judged: Judgement, effects: bool) -> tuple[Estimate, ...]:
     values = dict(zip(problem.names, map(float, problem.values), strict=True))
     estimates, bounded = [(f.values(), f.deviations()) for f in finals], [set(at_bounds(f.problem)) for f in finals]
 
+    strong = _strong_pairs(finals[-1])
+
     def of(name: str) -> Estimate:
         both = [
             (found[name], std if np.isfinite(std := deviations.get(name, np.nan)) else None)
             for found, deviations in estimates
         ]
         at_bound = name in bounded[0], effects and name in bounded[-1]
-        return Estimate(name, units[name], values[name], both[0], both[1] if effects else None, at_bound)
+        return Estimate(
+            name, units[name], values[name], both[0], both[1] if effects else None, at_bound, strong.get(name, {})
+        )
 
     return tuple(of(name) for name in problem.free_names)
+
+
+def _strong_pairs(final: Final) -> dict[str, dict[str, float]]:
+    """By parameter those that its estimate moves with, and their correlation."""
+    if final.uncertainty is None:
+        return {}
+    found: dict[str, dict[str, float]] = {}
+    for one, other, correlation in correlation_matrix(final.problem.free_names, final.uncertainty).strong_pairs():
+        found.setdefault(one, {})[other] = found.setdefault(other, {})[one] = correlation
+    return found

@@ -125,7 +125,7 @@ def _card(effect: Effect, shown: Responses | None, explained: str) -> Card:
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
         bounded=effect.bounded,
-        undetermined=effect.undetermined,
+        undetermined=". ".join(filter(None, (effect.undetermined, effect.like))),
         shares=_shares(effect),
         one_effect="" if whole is None or not whole.one_effect else text.first_capital(whole.told_one_effect),
         experiment=effect.separating_experiment if whole is None or whole.separable else "",

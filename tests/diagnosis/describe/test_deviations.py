@@ -17,3 +17,13 @@ def test_what_is_not_determined_is_told_from_what_was_not_computed(stub) -> None
     )
     found = _parameters(model, stub(prefix="gear.ripple"), final)
     assert {name: entry["std"] for name, entry in found.items()} == {"a": 0.1, "b": math.inf, "order": None}
+
+
+def test_parameters_have_their_meaning(stub) -> None:
+    """Seen: F_c, F_s, v_s and v_0 in the report without a word of what they are."""
+    model = stub(
+        declared_parameters=[Parameter("belt.stribeck_friction.v_s", 0.1, unit="m/s", description="Stribeck speed")]
+    )
+    final = stub(values=lambda: {"belt.stribeck_friction.v_s": 0.1}, deviations=lambda: {})
+    found = _parameters(model, stub(prefix="belt.stribeck_friction"), final)
+    assert found["v_s"]["description"] == "Stribeck speed"

@@ -3,7 +3,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from greybox_torch.diagnosis.verdict import Estimate, Verdict
+from greybox_torch.diagnosis.own_parameters import Estimate
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
 from greybox_torch.report.sections.parameters import Parameters

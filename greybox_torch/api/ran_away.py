@@ -1,0 +1,92 @@
+"""Estimates that ran away: parameters far from where they began, start states far from where the machine can have been."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.estimate.descent import TRUSTED
+from greybox_torch.estimate.fit import Estimation
+from greybox_torch.estimate.free_run import visited_states
+from greybox_torch.estimate.problem import make_problem, with_card
+from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.in_unit import in_unit
+from greybox_torch.model.sensed_states import sensed_states
+from greybox_torch.name_lists import listed
+
+FOR_SURE = 1e8
+"""Times its start value from which a parameter has run away: no card is that far off, but by a unit that is wrong."""
+
+BADLY = 100.0
+"""The same where the estimate simulates badly and the deviation is beyond the start value too; and times what a state reaches from the
+start values, beyond which the start state and its deviation have run away.
+"""
+
+
+def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
+    """A sentence, without its full stop, where free parameters or start states that no output shows have run away; else None.
+
+    Args:
+        fit: mean fit in % with which the estimate simulates.
+    """
+    far = _parameters(found, data, fit) + _starts(found, data)
+    if not far:
+        return None
+    return (
+        f"Ran away: {listed(far)}. These recordings hold no value there, or it makes up for something that the model lacks: look whether a "
+        "column has the unit and scale that the card says, give bounds on the card (upper = …), or fix what is known ({ value = …, fixed "
+        "= true } in [model.parameters] or [model.initial])"
+    )
+
+
+def _parameters(found: Estimation, data: DataSet, fit: float) -> list[str]:
+    problem = found.problem
+    held = problem.model.held_values()
+    declared = with_card(data, problem.model)
+    begun, units = {p.name: held.get(p.name, p.value) for p in declared}, {p.name: p.unit for p in declared}
+    loose = {n for n, deviation in _widest(found).items() if deviation >= abs(begun[n])} if fit < TRUSTED else set()
+    return [
+        in_unit(f"{name} = {value:.4g}", units[name]) + f" (begun with {begun[name]:.3g})"
+        for name, value in problem.values_by_name.items()
+        if name in problem.free_names and abs(value) >= (BADLY if name in loose else FOR_SURE) * abs(begun[name]) > 0.0
+    ]
+
+
+def _widest(found: Estimation) -> dict[str, float]:
+    """The larger of both deviations of every free parameter."""
+    coloured = found.parameter_deviations("sandwich")
+    return {name: max(plain, coloured[name]) for name, plain in found.parameter_deviations().items()}
+
+
+def _starts(found: Estimation, data: DataSet) -> list[str]:
+    """Of every state that ran away, how far, and where farthest."""
+    problem = found.problem
+    deviations = np.maximum(found.initial_deviations(), found.initial_deviations("sandwich"))
+    shown = sensed_states(problem.model.plain)
+    asked = [
+        i for i in problem.free_states if problem.model.states[i].name not in shown and (deviations[:, i] > 0.0).any()
+    ]
+    if not asked:
+        return []
+    reached, told = _reached(found, data), []
+    for i in asked:
+        state, most = problem.model.states[i], BADLY * reached[i]
+        far = np.flatnonzero((np.abs(problem.initial[:, i]) > most) & (deviations[:, i] > most))
+        if len(far) and 0.0 < most < np.inf:
+            e = far[np.argmax(np.abs(problem.initial[far, i]))]
+            value = in_unit(f"{state.name} = {problem.initial[e, i]:.4g}", state.unit)
+            size = deviations[e, i]
+            spread = f"± {size:.2g}" if size < np.inf else "undetermined"
+            others = f", as far in {len(far) - 1} more" if len(far) > 1 else ""
+            told.append(
+                f"{value} where {problem.records.names[e]} begins ({spread}; with the start values it stays within "
+                f"{in_unit(f'{reached[i]:.2g}', state.unit)}){others}"
+            )
+    return told
+
+
+def _reached(found: Estimation, data: DataSet) -> np.ndarray:
+    """The largest size (n_x,) that every state reaches in free runs with the values that the estimation began with."""
+    begun = make_problem(data, found.problem.model, data.estimation())
+    states = visited_states(begun, simulator_for(begun, tangents=False))
+    return np.max([np.abs(one).max(axis=0) for one in states], axis=0)

@@ -1,0 +1,48 @@
+"""The free parameters of the model itself, as a verdict gives them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from greybox_torch.estimate.brief_lists import brief_pairs
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A free parameter of the model, in ``unit``: as the card has it, re-estimated, and with the effects (None where there are none).
+
+    Standard deviations are None where they are not known. ``at_bound``: whether the two estimates are at a bound of the parameter.
+    ``together``: by name those of the model that the last of these estimates hardly goes without, with their correlation.
+    """
+
+    name: str
+    unit: str
+    start: float
+    refit: tuple[float, float | None]
+    augmented: tuple[float, float | None] | None
+    at_bound: tuple[bool, bool] = (False, False)
+    together: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def weak(self) -> bool:
+        """Whether the last estimate is at a bound, or its deviation larger than itself."""
+        value, deviation = self.refit if self.augmented is None else self.augmented
+        return self.at_bound[0 if self.augmented is None else 1] or (deviation is not None and deviation > abs(value))
+
+
+def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
+    """A sentence on those of which the recordings determine the one only with the other, where either is weak by itself; none elsewhere."""
+    known = {one.name: one for one in estimates}
+    pairs = [
+        (one.name, other, correlation)
+        for k, one in enumerate(estimates)
+        for other, correlation in one.together.items()
+        if other in [e.name for e in estimates[k + 1 :]] and (one.weak or known[other].weak)
+    ]
+    if not pairs:
+        return ()
+    return (
+        f"Determined only together (correlation of the estimates): {brief_pairs(pairs)}. What one has too much the other has too little: "
+        "fix the one that is known.",
+    )
