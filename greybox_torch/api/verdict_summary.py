@@ -148,7 +148,7 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
-    lines += [f"{head}: {effect.of_units}"] if effect.of_units else []
+    lines += [f"{head}: {clause}" for clause in (effect.of_units, effect.of_sign) if clause]
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     together = () if effect.one_of is None else effect.one_of.members

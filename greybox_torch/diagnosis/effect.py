@@ -138,6 +138,8 @@ class Effect:
 
     of_units: str = ""
     """That a gain is the factor of a unit that the model's equations may lack, or why there are none, a clause; "" elsewhere."""
+    of_sign: str = ""
+    """That a term of the model's equations may have the wrong sign, a clause that asks; "" elsewhere."""
     limited: tuple[str, ...] = ()
     """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
 
@@ -184,7 +186,7 @@ class Effect:
         """What a reader of the evidence has to know of its parameters and its probability; clauses."""
         # What a bound means is told beside the parameters.
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        return tuple(filter(None, (self.of_units, bounded, *self.limited)))
+        return tuple(filter(None, (self.of_units, self.of_sign, bounded, *self.limited)))
 
     @property
     def headline(self) -> str:
