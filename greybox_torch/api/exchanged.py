@@ -27,7 +27,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         simulator: of the model, with tangents for its free parameters.
         achieved: the mean fit in % on the validation experiments of the estimate itself; may be minus infinity.
     """
-    return _asked(data, model, simulator, achieved, list(_changes(model)))
+    return asked_of_best(data, model, simulator, achieved, list(_changes(model)))
 
 
 def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
@@ -35,18 +35,26 @@ def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simu
 
     Arguments as for :func:`exchanged`.
     """
-    return _asked(data, model, simulator, achieved, list(_of_other_units(data, model)))
+    return asked_of_best(data, model, simulator, achieved, list(_of_other_units(data, model)))
 
 
-def _asked(
-    data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float, changes: Sequence[Change]
+def asked_of_best(
+    data: DataSet,
+    model: GreyBoxModel,
+    simulator: Simulator,
+    achieved: float,
+    changes: Sequence[Change],
+    so: str = "So changed",
 ) -> str | None:
+    """The question of one of the ``changes``, of those that simulate best with the start values; ``so``: what was refitted."""
     short = beginnings(data)
     if short is None or not changes:
         return None
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
     tried = [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
-    return asked_of(tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale")
+    return asked_of(
+        tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale", so
+    )
 
 
 def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:

@@ -118,9 +118,15 @@ def far_better(
     return (left, lefts) if least < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
 
 
-def asked_of(tried: Sequence[Change], found: tuple[float, list[float]] | None, data: DataSet, mend: str) -> str | None:
+def asked_of(
+    tried: Sequence[Change],
+    found: tuple[float, list[float]] | None,
+    data: DataSet,
+    mend: str,
+    so: str = "So changed",
+) -> str | None:
     """The question whether the best of the changes that were refitted is so, or one that is as good; None where :func:`far_better` has
-    found none. ``mend``: what to do then.
+    found none. ``mend``: what to do then; ``so``: what was refitted.
     """
     if found is None:
         return None
@@ -129,7 +135,7 @@ def asked_of(tried: Sequence[Change], found: tuple[float, list[float]] | None, d
     question = ", or ".join(asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     return (
-        f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
+        f"{question[0].upper()}{question[1:]}? {so}, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
         f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
     )
 
