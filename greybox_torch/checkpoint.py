@@ -97,12 +97,15 @@ def load_checkpoint(path: str | PathLike[str]) -> Checkpoint:
     """
     path = _found(Path(path))
     tensors, card = _halves(path)
-    for half, other in ((tensors, card), (card, tensors)):
-        if not _is_there(half):
-            what = f"its other half {other} is there" if _is_there(other) else "nor is its other half"
-            raise UserError(
-                f"checkpoint {half}: no such file ({what}); expected {tensors.name} and {card.name}{_instead(path)}"
-            )
+    lacking = [half for half in (tensors, card) if not _is_there(half)]
+    if len(lacking) == 2 or (lacking and _beside_results(path)):
+        expected = f"expected a folder of results, or a checkpoint's two files {tensors.name} and {card.name}"
+        raise UserError(f"checkpoint {path}: {_instead(path)}; {expected}")
+    if lacking:
+        other = card if lacking == [tensors] else tensors
+        raise UserError(
+            f"checkpoint {lacking[0]}: no such file (its other half {other} is there); expected {tensors.name} and {card.name}"
+        )
     content = read_checkpoint_card(card)
     return Checkpoint(
         values=_values(tensors, card, content),
@@ -154,14 +157,21 @@ def _is_there(half: Path) -> bool:
 
 
 def _instead(path: Path) -> str:
-    """What is at `path` in the place of a checkpoint, to end a message; "" for nothing."""
+    """What is at `path` in the place of a checkpoint, for a message."""
     if not _is_there(path):
-        return ""
+        return "no such file or folder"
+    if path.suffix == ".toml":
+        return "is a data card, no checkpoint"
     if path.is_dir():
-        return f"; {path} is a folder without results (model.json)"
-    if path.name != f"{MODEL}.json" and _is_there(path.with_name(f"{MODEL}.json")):
-        return f"; {path} is none, the folder {path.parent} has results: name the folder"
-    return ""
+        return "is a folder without results (model.json)"
+    if _beside_results(path):
+        return f"is none, the folder {path.parent} has results: name the folder"
+    return "is no checkpoint"
+
+
+def _beside_results(path: Path) -> bool:
+    """Whether `path` is another file of a folder of results, not their checkpoint."""
+    return _is_there(path) and path.name != f"{MODEL}.json" and _is_there(path.with_name(f"{MODEL}.json"))
 
 
 def _found(path: Path) -> Path:

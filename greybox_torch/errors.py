@@ -55,6 +55,10 @@ class ArgumentError(UserError):
         """The message with the option's name in place of the argument's."""
         return f"--{self.option} {self.found}: {self.problem}"
 
+    def for_position(self) -> str:
+        """The message where the command line takes the argument by its position."""
+        return f"{self.argument.upper()} {self.found}: {self.problem}"
+
 
 def check_none(problems: Sequence[str], place: str, before_one: str = ": ") -> None:
     """Raises UserError, beginning with ``place``, where there are ``problems``: one in its line, several in a line each."""

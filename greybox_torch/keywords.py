@@ -75,11 +75,11 @@ def _names(function: Callable[..., object]) -> list[str]:
 
 
 def _meant(name: str, function: Callable[..., object]) -> str:
-    others = {
-        f"{one.__name__}({field}=…)": field for one in _SETTINGS if function in _SETTINGS for field in _names(one)
-    }
-    elsewhere = next((call for call, field in others.items() if did_you_mean(name, [field])), "")
-    return did_you_mean(name, _names(function)) or (f" (did you mean {elsewhere}?)" if elsewhere else "")
+    own = _names(function)
+    elsewhere = {f: one.__name__ for one in _SETTINGS if function in _SETTINGS for f in _names(one) if f not in own}
+    nearest = did_you_mean(name, [*own, *elsewhere])
+    of_other = next((f"{one}({f}=…)" for f, one in elsewhere.items() if nearest == did_you_mean(f, [f])), "")
+    return f" (did you mean {of_other}?)" if of_other else nearest
 
 
 def _taken(function: Callable[..., object]) -> str:

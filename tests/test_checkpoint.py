@@ -109,7 +109,7 @@ def test_a_checkpoint_beside_a_folder_of_its_name_is_meant_itself(tmp_path: Path
 
 def test_a_folder_without_one_is_said_to_be_without(tmp_path: Path) -> None:
     (tmp_path / "found").mkdir()
-    with pytest.raises(UserError, match=r"found\.safetensors: no such file.*; .*found is a folder without results"):
+    with pytest.raises(UserError, match=r"found: is a folder without results \(model\.json\); expected a folder"):
         load_checkpoint(tmp_path / "found")
     (tmp_path / "found" / "model.json").write_text("{}")
     with pytest.raises(UserError, match=r"model\.safetensors: no such file \(its other half .*model\.json is there"):
@@ -120,5 +120,12 @@ def test_another_file_of_the_results_is_answered_with_their_folder(tmp_path: Pat
     """Seen: `greybox compare dataset.toml results/fit.json` missed a fit.safetensors, which there never was."""
     save_checkpoint(tmp_path / "found" / "model", MOTOR)
     (tmp_path / "found" / "fit.json").write_text("{}")
-    with pytest.raises(UserError, match=r"fit\.json is none, the folder .*found has results: name the folder$"):
+    with pytest.raises(UserError, match=r"fit\.json: is none, the folder .*found has results: name the folder;"):
         load_checkpoint(tmp_path / "found" / "fit.json")
+
+
+def test_a_card_in_the_place_of_a_checkpoint_is_called_one(tmp_path: Path) -> None:
+    """Seen: "dataset.toml.safetensors: no such file (nor is its other half)"."""
+    (tmp_path / "dataset.toml").write_text("")
+    with pytest.raises(UserError, match=r"dataset\.toml: is a data card, no checkpoint; expected a folder of results"):
+        load_checkpoint(tmp_path / "dataset.toml")

@@ -78,7 +78,10 @@ def tensors_of(kind: str, size: int) -> bytes:
             lambda tensors, card: card.unlink(),
             r"model.json: no such file \(its other half .*model.safetensors is there\)",
         ),
-        (lambda tensors, card: (tensors.unlink(), card.unlink()), r"no such file \(nor is its other half\)"),
+        (
+            lambda tensors, card: (tensors.unlink(), card.unlink()),
+            r"model: no such file or folder; expected a folder of",
+        ),
         (
             lambda tensors, card: tensors.write_bytes(tensors.read_bytes()[:-3]),
             r"model.safetensors: damaged, or not the file .* SHA-256 is \w{12}…, expected \w{12}…",

@@ -28,6 +28,7 @@ ARM: Any = RobotArm
         (lambda: GT.fit(role=1), "role", "; it takes model, data"),
         (lambda: GT.SearchBudget(most_efects=2), "most_efects", '(did you mean "most_effects"?)'),
         (lambda: GT.DiagnosisSettings(most_efects=2), "most_efects", "(did you mean SearchBudget(most_effects=…)?)"),
+        (lambda: GT.DiagnosisSettings(most_effect=1), "most_effect", "(did you mean SearchBudget(most_effects=…)?)"),
         (lambda: GT.SearchBudget(what=2), "what", "SearchBudget() takes no argument of this name"),
         (lambda: GT.TrainingSettings(epoch=2), "epoch", '(did you mean "epochs"?)'),
         (lambda: ARM().set_values(m=-1.0), "m", "set_values() takes no argument of this name; it takes values"),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from greybox_torch.api.exchanged import exchanged
+from greybox_torch.api.exchanged import exchanged, exchanged_of_other_units
 from greybox_torch.api.rescaled import rescaled
 from greybox_torch.api.short_refits import beginnings
 from greybox_torch.api.turned_in_one import turned_in_one
+from greybox_torch.api.turned_with_friction import turned_with_friction
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
 from greybox_torch.model import GreyBoxModel
@@ -17,7 +18,7 @@ POOR = 80.0
 """Mean fit in % below which it is asked."""
 
 FAR_BETTER_SO = "One of these changes makes it far better: the question is asked with the results"
-NOTHING_CHANGED = "None of these changes makes it far better: the channels seem to be what the card says"
+NOTHING_CHANGED = "None of these changes makes it far better. That does not rule them out: what the model lacks may hide a sign or a scale"
 """What came of it, in the log."""
 
 
@@ -28,8 +29,8 @@ def asked_where_poor(
     simulator: Callable[[], Simulator],
     progress: Callable[[str], None],
 ) -> str | None:
-    """The question of :func:`exchanged`, else of :func:`turned_in_one`, else of :func:`rescaled`, where the re-estimated model, with the
-    scores ``refit``, is poor on the validation experiments.
+    """The question of :func:`exchanged`, or else of the other ways in their order, where the re-estimated model, with the scores ``refit``,
+    is poor on the validation experiments.
 
     Args:
         simulator: makes the one that is needed then.
@@ -41,7 +42,7 @@ def asked_where_poor(
         "The validation fit is poor: trying short refits with channels exchanged, of the other sign, or of another scale"
     )
     made, achieved = simulator(), mean_fit(held_out_scores(refit))
-    ways = (exchanged, turned_in_one, rescaled)
+    ways = (exchanged, exchanged_of_other_units, turned_in_one, rescaled, turned_with_friction)
     question = next((asked for way in ways if (asked := way(data, model, made, achieved))), None)
     progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
     return question

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations
+
+import numpy as np
 
 from greybox_torch.api.short_refits import REFITTED, Change, asked_of, beginnings, far_better, fit_after
 from greybox_torch.data import DataSet
@@ -25,12 +27,47 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         simulator: of the model, with tangents for its free parameters.
         achieved: the mean fit in % on the validation experiments of the estimate itself; may be minus infinity.
     """
-    short, changes = beginnings(data), list(_changes(model))
+    return asked_of_best(data, model, simulator, achieved, list(_changes(model)))
+
+
+def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+    """The question for the columns of two inputs or two outputs of different units, each with the scale that the card gives the channel.
+
+    Arguments as for :func:`exchanged`.
+    """
+    return asked_of_best(data, model, simulator, achieved, list(_of_other_units(data, model)))
+
+
+def asked_of_best(
+    data: DataSet,
+    model: GreyBoxModel,
+    simulator: Simulator,
+    achieved: float,
+    changes: Sequence[Change],
+    so: str = "So changed",
+) -> str | None:
+    """The question of one of the ``changes``, of those that simulate best with the start values; ``so``: what was refitted."""
+    short = beginnings(data)
     if short is None or not changes:
         return None
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
     tried = [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
-    return asked_of(tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale")
+    return asked_of(
+        tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale", so
+    )
+
+
+def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
+    for signals in (model.inputs, model.outputs):
+        pairs = [
+            pair for pair in combinations(signals, 2) if all(s.unit for s in pair) and pair[0].unit != pair[1].unit
+        ]
+        for pair in pairs if len(pairs) <= MOST_ALIKE else ():
+            one, other = (signal.name for signal in pair)
+            ratio = data.channels[one].factor / data.channels[other].factor
+            if np.isfinite(ratio):
+                question = f"are the columns of {listed([one, other])} exchanged"
+                yield Change({one: other, other: one}, question, factors={one: ratio, other: 1.0 / ratio})
 
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:

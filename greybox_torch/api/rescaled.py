@@ -22,6 +22,7 @@ from greybox_torch.api.short_refits import (
     judging,
 )
 from greybox_torch.data import DataSet
+from greybox_torch.data.units import per_minute
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import Simulator
@@ -29,8 +30,10 @@ from greybox_torch.simulation.simulator import Simulator
 DECADES = (10.0, 100.0, 1000.0)
 """Factors that any channel may be read with too much or too little."""
 
-PER_MINUTE, DEGREES = 60.0, 180.0 / np.pi
-"""Those of units with a time or an angle in them."""
+PER_MINUTE, DEGREES, TURNS_PER_MINUTE = 60.0, 180.0 / np.pi, 30.0 / np.pi
+"""Those of units with a time, of units with an angle, and of angular speeds."""
+
+_ANGULAR_SPEED = re.compile(r"(m?rad|deg|°)\s*/\s*(s|min)|rpm")
 
 MOST_CHANNELS = 8
 """Inputs, and outputs, up to which each is tried with every factor: seven simulations or so for one."""
@@ -74,10 +77,18 @@ def _changes(model: GreyBoxModel) -> Iterator[Change]:
 
 def _factors(unit: str) -> list[float]:
     words = set(re.findall(r"[A-Za-z]+", unit))
-    per_minute = [PER_MINUTE] if words & {"s", "min", "h", "Hz", "rpm"} else []
-    return [*DECADES, *per_minute, *([DEGREES] if words & {"rad", "deg"} else [])]
+    times = [PER_MINUTE] if words & {"s", "min", "h", "Hz", "rpm"} else []
+    degrees = [DEGREES] if words & {"rad", "deg"} else []
+    if _ANGULAR_SPEED.fullmatch(unit.strip()) or per_minute(unit):
+        # no refit tells 9.55 from 10, and of angular speeds rpm are the likelier slip
+        return [TURNS_PER_MINUTE, *DECADES[1:], *times, *degrees]
+    return [*DECADES, *times, *degrees]
 
 
 def _question(name: str, times: float, size: str) -> str:
-    known = {PER_MINUTE: " (s and min differ by that)", DEGREES: " (rad and deg differ by that)"}
+    known = {
+        PER_MINUTE: " (s and min differ by that)",
+        DEGREES: " (rad and deg differ by that)",
+        TURNS_PER_MINUTE: " (rpm and rad/s differ by that)",
+    }
     return f"Is the scale of {name} right? With values {digits(times, 3)} times {size}{known.get(times, '')}"

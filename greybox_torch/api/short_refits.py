@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -37,19 +37,21 @@ AS_GOOD = 1.2
 @dataclass(frozen=True)
 class Change:
     """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
-    where its sign is turned; ``only`` the recordings that are changed, by name, all where it is empty.
+    where its sign is turned, and ``factors`` by which those of single channels are; ``only`` the recordings that are changed, by name, all
+    where it is empty.
     """
 
     read: Mapping[str, str]
     question: str
     factor: float = 1.0
     only: tuple[str, ...] = ()
+    factors: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, recording: Recording) -> Recording:
         """A recording with the change."""
         if self.only and recording.name not in self.only:
             return recording
-        changed = {name: self.factor * recording.signals[other] for name, other in self.read.items()}
+        changed = {n: self.factor * self.factors.get(n, 1.0) * recording.signals[o] for n, o in self.read.items()}
         between = {name: recording.between[other] for name, other in self.read.items() if other in recording.between}
         kept = {name: marked for name, marked in recording.between.items() if name not in self.read}
         return replace(recording, signals={**recording.signals, **changed}, between={**kept, **between})
@@ -116,9 +118,15 @@ def far_better(
     return (left, lefts) if least < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
 
 
-def asked_of(tried: Sequence[Change], found: tuple[float, list[float]] | None, data: DataSet, mend: str) -> str | None:
+def asked_of(
+    tried: Sequence[Change],
+    found: tuple[float, list[float]] | None,
+    data: DataSet,
+    mend: str,
+    so: str = "So changed",
+) -> str | None:
     """The question whether the best of the changes that were refitted is so, or one that is as good; None where :func:`far_better` has
-    found none. ``mend``: what to do then.
+    found none. ``mend``: what to do then; ``so``: what was refitted.
     """
     if found is None:
         return None
@@ -127,7 +135,7 @@ def asked_of(tried: Sequence[Change], found: tuple[float, list[float]] | None, d
     question = ", or ".join(asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     return (
-        f"{question[0].upper()}{question[1:]}? So changed, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
+        f"{question[0].upper()}{question[1:]}? {so}, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
         f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
     )
 

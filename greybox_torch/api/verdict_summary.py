@@ -150,7 +150,7 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
-    lines += [f"{head}: {told}" for told in (effect.of_units, effect.like) if told]
+    lines += [f"{head}: {told}" for told in (effect.of_units, effect.like, effect.of_sign) if told]
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     together = () if effect.one_of is None else effect.one_of.members

@@ -76,7 +76,7 @@ WATT = Dimension.of({"[mass]": Fraction(1), "[length]": Fraction(2), "[time]": F
 
 def _term(name: str, power: Fraction) -> str:
     unit = _BASE.get(name, name)
-    return unit if power == 1 else f"{unit}^{power}"
+    return unit if power == 1 else f"{unit}^{power}" if power.denominator == 1 else f"{unit}^({power})"
 
 
 def dimension_of(unit: str) -> Dimension | None:

@@ -1,4 +1,4 @@
-"""Where the equations are no numbers: at random points, and where a simulation begins, with the line that makes them so."""
+"""Where the equations give no number: at random points, and where a simulation begins, with the line that makes them so."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def not_finite(model: GreyBoxModel, influence: Influence, points: Points, source
     shown = [f"{s.name} = {v:.3g}" for s, v in zip((*model.states, *model.inputs), (*x[:, at], *u[:, at]), strict=True)]
     one = Points(*(of.detach()[:, at : at + 1] for of in (points.x, points.u, points.p, points.f)))
     yield _finding(
-        f"the equations are no numbers at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
+        f"the equations give no number at {lost.size} of {len(influence.finite)} random points, such as {', '.join(shown[:6])}",
         source,
         _origin(model, one, source.file)[1],
     )
@@ -64,7 +64,7 @@ def not_finite_where_recorded(model: GreyBoxModel, points: Points, tries: int, s
     named += [(s.name, float(one.u[i, 0])) for i, s in enumerate(model.inputs)]
     others = ", whatever the other states are" if len(seen) < len(model.states) else ""
     yield _finding(
-        f"the equations are no numbers (a root or logarithm of a negative number, or 0/0) at {lost.size} of {len(by_sample)} recorded "
+        f"the equations give no number (a root or logarithm of a negative number, or 0/0) at {lost.size} of {len(by_sample)} recorded "
         f"samples{others}, such as {', '.join(f'{name} = {value:.3g}' for name, value in named[:6])}",
         source,
         _origin(model, one, source.file)[1],
@@ -80,11 +80,11 @@ def never_finite(model: GreyBoxModel, points: Points, starts: Collection[Points]
     """
     one = Points(*(of.detach()[:, :1] for of in (points.x, points.u, points.p, points.f)))
     found = (
-        "the equations are no numbers (nan or inf) at any of the values that were tried, from thousandths to millions"
+        "the equations give no number (nan or inf) at any of the values that were tried, from thousandths to millions"
     )
     lost = [_origin(model, start, source.file)[0] for start in starts]
     if starts and not all(lost):
-        found += ", but they are where a simulation begins"
+        found += ", but they do where a simulation begins"
     return replace(
         _finding(found, source, _origin(model, one, source.file)[1]),
         level="error" if starts and all(lost) else "warning",
@@ -117,7 +117,7 @@ def not_finite_at_start(
         standing = [name for name, other in zero.items() if not _origin(model, other, source.file)[0]]
     of = f' of "{name}"' if name else " (states at their start values, measured ones and inputs at zero)"
     yield _finding(
-        f"the equations are no numbers at the start{of}"
+        f"the equations give no number at the start{of}"
         + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
         source,
         line,

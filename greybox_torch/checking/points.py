@@ -57,7 +57,7 @@ def points_of(model: GreyBoxModel) -> Points:
 
 
 def wide_points(model: GreyBoxModel) -> Points:
-    """Points for equations that are no numbers at any of :func:`points_of`: values above zero over many decades, as absolute temperatures
+    """Points for equations that give no number at any of :func:`points_of`: values above zero over many decades, as absolute temperatures
     and pressures have, in the order drawn, rising and falling from state to state, as levels and pressures along a line may have to; and
     states that are all between 0 and 1, as fractions are.
     """

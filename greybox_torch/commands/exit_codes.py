@@ -32,7 +32,10 @@ class Commands(TyperGroup):
             sys.stdout.flush()
             return done
         except ArgumentError as error:
-            raise _stop(f"error: {error.for_option()}", 2) from None
+            command = self.get_command(ctx, ctx.invoked_subcommand or "")
+            positions = [] if command is None else [p.name for p in command.params if p.param_type_name == "argument"]
+            told = error.for_position() if error.argument in positions else error.for_option()
+            raise _stop(f"error: {told}", 2) from None
         except NothingToDo as told:
             raise _stop(str(told), 4) from None
         except UserError as error:

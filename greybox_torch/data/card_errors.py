@@ -104,7 +104,7 @@ def _is_constant(details: Any, content: dict[str, Any]) -> bool:
 
 
 def _constant(channel: str | int, value: float) -> str:
-    return f'{{ unit = "…" }} alone, and constants = {{ {toml_key(str(channel))} = {value:g} }} in every [[experiment]]'
+    return f'{{ unit = "…" }} alone, and constants = {{ {toml_key(str(channel))} = {quoted(value)} }} in every [[experiment]]'
 
 
 def _at(location: Sequence[str | int], content: dict[str, Any]) -> str:

@@ -123,5 +123,8 @@ def check_same_length(columns: Mapping[str, NDArray[np.float64]], file: Path) ->
     lengths = {column: len(values) for column, values in columns.items()}
     if len(set(lengths.values())) > 1:
         found = ", ".join(f'"{column}" has {length}' for column, length in lengths.items())
-        raise UserError(f"{file}: columns differ in length: {found}; expected as many samples in each")
+        raise UserError(
+            f"{file}: columns differ in length: {found}; expected as many samples in each; a slower one has to be in "
+            'a file of its own with its time stamps, which join = "time" joins'
+        )
     return dict(columns)

@@ -25,6 +25,7 @@ _ARGUMENTS = {
     "[model] name": "argument model",
     "[model.parameters]": "argument parameters:",
     "[model.initial]": "argument initial:",
+    "[[experiment]]": "recordings:",
     "[[experiment]] role:": "role of the recordings:",
 }
 

@@ -28,6 +28,14 @@ def in_unit(entry: ChannelEntry, values: NDArray[np.float64]) -> NDArray[np.floa
     return values * factor + offset
 
 
+def factor_of(entry: ChannelEntry) -> float:
+    """By what the values of a file are multiplied for those in the channel's unit; not a number where more is done to them."""
+    if entry.derivative is not None or entry.expr is not None:
+        return np.nan
+    zero, one = in_unit(entry, np.array([0.0, 1.0]))
+    return float(one) if zero == 0.0 else np.nan
+
+
 def check_units(
     place: str, channels: Mapping[str, ChannelEntry], formulas: Mapping[str, Expression], source: Source
 ) -> None:

@@ -20,7 +20,7 @@ from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
-from greybox_torch.data.file_units import check_unit_of_time, check_units, in_unit
+from greybox_torch.data.file_units import check_unit_of_time, check_units, factor_of, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
 from greybox_torch.data.over_files import over_files
@@ -65,7 +65,7 @@ def _channel(name: str, entry: ChannelEntry) -> Channel:
     plain = (
         entry.derivative is None and "scale" not in entry.model_fields_set
     )  # else the name tells the unit of something else
-    return Channel(name, entry.unit, column, entry.file_unit or (unit_in(column) if plain else ""))
+    return Channel(name, entry.unit, column, entry.file_unit or (unit_in(column) if plain else ""), factor_of(entry))
 
 
 def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: Read) -> Recording:

@@ -20,13 +20,15 @@ class Channel:
     """A measured signal: an input or an output of the model, by the model's name for it. `unit` may be empty.
 
     `column` is the one of the card that it comes from, `file_unit` the unit of its values there, as the card or the name of the column
-    says; both are empty where that is not known.
+    says; both are empty where that is not known. `factor` is by what its values there are multiplied for those in `unit`; not a number
+    where more is done to them.
     """
 
     name: str
     unit: str
     column: str = field(default="", compare=False)
     file_unit: str = field(default="", compare=False)
+    factor: float = field(default=1.0, compare=False)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from greybox_torch.data.checks import check_finite, check_same_length, check_time
 from greybox_torch.data.gaps import in_gaps, lost_samples
-from greybox_torch.data.in_no_file import in_no_file
+from greybox_torch.data.in_no_file import in_nested_file, in_no_file
 from greybox_torch.data.joined_rows import joined_rows
 from greybox_torch.data.processing import at_times, between_samples
 from greybox_torch.data.readers.table import NoSuchColumn, Table
@@ -71,7 +71,10 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
             different length whose rows are to be joined.
     """
     if len(files) == 1:
-        table = read(files[0], tuple(columns))
+        try:
+            table = read(files[0], tuple(columns))
+        except NoSuchColumn as error:
+            raise in_nested_file(files[0], error) from None
         return Source((table,), check_same_length(table.columns, table.path), table.notes)
     if join == "concatenate":
         tables = tuple(read(file, tuple(columns)) for file in files)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -141,16 +141,18 @@ class Effect:
 
     of_units: str = ""
     """That a gain is the factor of a unit that the model's equations may lack, or why there are none, a clause; "" elsewhere."""
+
     like: str = ""
     """Which other effects are the same force in the one direction of motion that the recordings show, a clause; "" for none."""
+
+    of_sign: str = ""
+    """That a term of the model's equations may have the wrong sign, a clause that asks; "" elsewhere."""
 
     limited: tuple[str, ...] = ()
     """Why no more is claimed for it, where what was compared with it leaves it more; clauses."""
 
     why_small: str = SO_LITTLE
     """Of a refinement: why it is no finding, a clause."""
-    meanings: Mapping[str, str] = field(default_factory=dict)
-    """What its parameters are, by name, in words."""
 
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
@@ -195,7 +197,7 @@ class Effect:
         """What a reader of the evidence has to know of its parameters and its probability; clauses."""
         # What a bound means is told beside the parameters.
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        return tuple(filter(None, (self.of_units, self.like, bounded, *self.limited)))
+        return tuple(filter(None, (self.of_units, self.like, self.of_sign, bounded, *self.limited)))
 
     @property
     def headline(self) -> str:
@@ -209,10 +211,8 @@ class Effect:
     @property
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
-        accounts = (
-            f"{spoken_at(self.mechanism, self.port)} accounts for {digits(100 * self.size)} % of the whole mismatch"
-        )
-        return f"{accounts}: {self.why_small}"
+        said, size = spoken_at(self.mechanism, self.port), digits(100 * self.size)
+        return f"{said} accounts for {size} % of the whole mismatch: {self.why_small}"
 
     def as_json(self) -> dict[str, Any]:
         """Its entry under `effects`."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from greybox_torch.data.gaps import Gap, pieces_around
 from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
+from greybox_torch.drafting.further_runs import of_further_runs
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
@@ -70,6 +71,8 @@ def draft_card(
     if missing:  # what there is to them may be in a column that could not be read, or in another file
         missing += [fault for file in first.files for fault in _faults(file)]
         missing += filter(None, [apart(runs)])
+    if model is not None and not apart(runs):
+        missing += of_further_runs(runs)
     missing += to_be_mended(runs)
     missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
     if first.clock.column is None and first.clock.sample_time is None:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import permutations
 from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
@@ -70,6 +71,24 @@ def _found(card: Card) -> Iterator[Contradiction]:
                     yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, write)
             elif name in card.channels:
                 yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns)
+        yield from _exchanged(where, {n: c for n, c in of.items() if c and n in card.channels}, card.channels, columns)
+
+
+def _exchanged(
+    where: str, named: Mapping[str, str], entries: Mapping[str, ChannelEntry], columns: set[str]
+) -> Iterator[Contradiction]:
+    """Pairs of channels of which each column is by its name of the other one's quantity: no scale makes up for that."""
+    told = {name: _unit_of(column, columns, entries[name].unit)[0] for name, column in named.items()}
+    for one, other in permutations(named, 2):
+        scaled = [name for name in (one, other) if "scale" in entries[name].model_fields_set]
+        if one not in scaled or not (told[one] and told[other] and named[one] != named[other]):
+            continue
+        theirs, own = (_dimension(entries[name].unit) for name in (other, one))
+        if None not in (theirs, own) and own != theirs == _dimension(told[one]) and own == _dimension(told[other]):
+            write = (
+                f'column = {toml_text(named[other])}, which "{other}" has: by their names the two columns are exchanged'
+            )
+            yield Contradiction(f'{where}channel "{one}"', named[one], told[one], entries[one].unit, write)
 
 
 def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str]) -> Iterator[Contradiction]:

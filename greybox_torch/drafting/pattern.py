@@ -26,9 +26,11 @@ def class_name(name: str) -> str:
     Raises ArgumentError where that is no name in Python.
     """
     stem = name.removesuffix(".py")
-    made = "".join(word[:1].upper() + word[1:] for word in re.split(r"[_\-\s]+", stem))
+    made = "".join(word[:1].upper() + word[1:] for word in re.split(r"[_\-]+", stem))
     if not made.isidentifier() or keyword.iskeyword(made):
-        raise ArgumentError("name", name, "expected a name of letters, digits and underscores, such as my_motor")
+        raise ArgumentError(
+            "name", name, "expected letters, digits, hyphens and underscores, beginning with a letter, such as my_motor"
+        )
     return made
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -11,7 +11,7 @@ import numpy as np
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.steps import steps_of
 from greybox_torch.data.units import written_alike
-from greybox_torch.errors import UserError
+from greybox_torch.errors import UserError, check_none
 from greybox_torch.files import toml_key
 from greybox_torch.model import GreyBoxModel, Input, Output
 from greybox_torch.simulation.driven_inputs import check_controller
@@ -108,12 +108,7 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
                 f"{dataset.place('[channels]')} has no '{name}', which model {model.title} needs; found: {found}; "
                 f"expected {_missing(dataset, signal, model)}"
             )
-        unit = dataset.channels[name].unit
-        if unit and signal.unit and not written_alike(unit, signal.unit):
-            raise UserError(
-                f"{dataset.place('[channels]')} {name}: unit is '{unit}', model {model.title} expects '{signal.unit}'; "
-                f"{other_unit(dataset, dataset.channels[name], signal.unit)}"
-            )
+    check_none(list(_other_units(dataset, model, declared)), dataset.place("[channels]"), before_one=" ")
     strange = [name for name in dataset.channels if name not in declared]
     if strange:
         of_a_frame = (
@@ -126,6 +121,17 @@ def check_channels(dataset: DataSet, model: GreyBoxModel) -> None:
             f"expected one of {', '.join(declared)}, or no such channel{of_a_frame}"
         )
     check_controller(dataset.controller, model, dataset.place("[controller]"))
+
+
+def _other_units(dataset: DataSet, model: GreyBoxModel, declared: Mapping[str, Input | Output]) -> Iterator[str]:
+    """What is wrong with the units of channels, all of them at once."""
+    for name, signal in declared.items():
+        channel = dataset.channels[name]
+        if channel.unit and signal.unit and not written_alike(channel.unit, signal.unit):
+            yield (
+                f"{name}: unit is '{channel.unit}', model {model.title} expects '{signal.unit}'; "
+                f"{other_unit(dataset, channel, signal.unit)}"
+            )
 
 
 def _missing(dataset: DataSet, signal: Input | Output, model: GreyBoxModel) -> str:

@@ -6,19 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import torch
 
+from greybox_torch.estimate.rates_and_outputs import RatesAndOutputs
 from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.residual_net import ResidualNet
-from greybox_torch.model import GreyBoxModel
-from greybox_torch.model.signals import parameter_signals
 from greybox_torch.training.learned_force import MOST_SAMPLES, visited
 from greybox_torch.training.trained import Trained
-
-STEP = 1e-6
-"""Relative step of the differences that slopes are taken by."""
 
 ELSEWHERE = 1e-6
 """Share of what a parameter changes, squared, of any rate or output, that a force at the port may not do."""
@@ -62,17 +57,15 @@ def own_parameters(found: Trained, signals: Mapping[str, np.ndarray]) -> OwnPara
     and a friction beside a network that reads the voltage come, with an input that does nothing, to nothing, and explain any curve.
     """
     problem, physics = found.result.problem, found.physics.problem.names
-    changes = _Changes(found)
-    per_force = changes.between({changes.unit: 0.0}, {changes.unit: 1.0})
+    changes, unit = _hybrid_with_one_more(found)
+    per_force = changes.between({unit: 0.0}, {unit: 1.0})
     strength = np.maximum((per_force**2).sum(axis=0), 1e-300)
     places, forces = [], []
     for k in np.flatnonzero(problem.free):
-        name, value = problem.names[k], float(problem.values[k])
+        name = problem.names[k]
         if name not in physics:
             continue
-        step = STEP * (abs(value) or abs(float(problem.expected[k])) or 1.0)
-        ends = (max(value - step, float(problem.lower[k])), min(value + step, float(problem.upper[k])))
-        slope = changes.between({name: ends[0]}, {name: ends[1]}) / max(ends[1] - ends[0], 1e-300)
+        slope = changes.slope(name, (float(problem.lower[k]), float(problem.upper[k])), float(problem.expected[k]))
         force = (per_force * slope).sum(axis=0) / strength
         beside = ((slope - per_force * force) ** 2).sum(axis=1)
         if (
@@ -100,24 +93,11 @@ def _is_function(force: np.ndarray, signals: Mapping[str, np.ndarray]) -> bool:
     return float(np.mean((force - force[nearest]) ** 2)) <= 2.0 * SCATTER * float(np.var(force))
 
 
-class _Changes:
-    """Rates and outputs of a hybrid with one force more at the port of its network, where its free run takes it."""
-
-    def __init__(self, found: Trained) -> None:
-        model, network = found.result.problem.model, found.hybrid.network
-        assert isinstance(model, AugmentedModel)
-        more = attach(model, network.port, ResidualNet(network.mechanism.needs, 1), label="_more")
-        self.unit = f"{more.prefix}.offset"
-        self.model: GreyBoxModel = AugmentedModel(model.base, (*model.attachments, more), model.surroundings)
-        self.values = {p.name: p.value for p in self.model.declared_parameters} | found.result.problem.values_by_name
-        self.states, self.inputs = visited(found, most=MOST_SAMPLES)
-
-    def between(self, first: Mapping[str, float], second: Mapping[str, float]) -> np.ndarray:
-        """By how much they are more (n_x + n_y, N) with parameters as ``second`` has them than as ``first`` does."""
-        return self._at(second) - self._at(first)
-
-    def _at(self, values: Mapping[str, float]) -> np.ndarray:
-        p = parameter_signals({**self.values, **values})
-        with torch.no_grad(), np.errstate(all="ignore"):
-            shown = (self.model.rates, self.model.measured)
-            return torch.cat([one(self.states, self.inputs, p) for one in shown]).numpy()
+def _hybrid_with_one_more(found: Trained) -> tuple[RatesAndOutputs, str]:
+    """Rates and outputs of a hybrid with one force more at the port of its network, where its free run takes it, and that force's name."""
+    model, network = found.result.problem.model, found.hybrid.network
+    assert isinstance(model, AugmentedModel)
+    more = attach(model, network.port, ResidualNet(network.mechanism.needs, 1), label="_more")
+    with_it = AugmentedModel(model.base, (*model.attachments, more), model.surroundings)
+    values = {p.name: p.value for p in with_it.declared_parameters} | found.result.problem.values_by_name
+    return RatesAndOutputs(with_it, values, *visited(found, most=MOST_SAMPLES)), f"{more.prefix}.offset"

@@ -12,6 +12,7 @@ from greybox_torch.api import asked_of_channels, exchanged, short_refits
 from greybox_torch.api.exchanged import MOST_ALIKE
 from greybox_torch.api.short_refits import MOST_SAMPLES
 from greybox_torch.api.verdict_summary import notes
+from greybox_torch.data.recording import Channel
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.sections.headline import Headline
 
@@ -76,6 +77,29 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     found = fitted(read, **sign)
     assert found.question is not None and asked in found.question and "?" in found.question
     assert f"{found.question}." in found._advice
+
+
+class InMillikelvin(Plate):
+    """The second thermocouple in millikelvin."""
+
+    outputs = (gt.Output("T1", "degC"), gt.Output("T2", "mK"))
+
+    def output(self, x, u, p):
+        return {"T1": x.T1, "T2": 1000.0 * x.T2}
+
+
+def test_channels_of_other_units_may_be_exchanged_too() -> None:
+    """Seen: the columns of a motor's speed in rad/s and a belt's in m/s, each with its scale: "the scale of motor_speed, 57.3 times"."""
+    read = recordings({"T1": "T2", "T2": "T1"}, T1=1000.0)
+    runs = [replace(run, units={}) for run in read.recordings]
+    question = gt.fit(InMillikelvin(), gt.DataSet(runs)).question
+    assert question is not None and question.startswith("Are the columns of T1 and T2 exchanged? So changed")
+    of_card = {n: Channel(n, "", factor=f) for n, f in {"P1": 1.0, "P2": 1.0, "T1": 2.0, "T2": 1000.0}.items()}
+    (change,) = exchanged._of_other_units(gt.DataSet(runs, channels=of_card), InMillikelvin())
+    run, changed = runs[0].signals, change.of(runs[0]).signals
+    assert np.allclose(changed["T1"] / 2.0, run["T2"] / 1000.0) and np.allclose(changed["T2"] / 1000.0, run["T1"] / 2.0)
+    of_card["T2"] = replace(of_card["T2"], factor=np.nan)
+    assert not [*exchanged._of_other_units(gt.DataSet(runs, channels=of_card), InMillikelvin())], "an offset, a formula"
 
 
 @pytest.mark.parametrize(("channel", "where"), [("P1", "first"), ("T2", "second"), ("T2", "held out")])
@@ -159,10 +183,11 @@ def test_the_log_says_what_came_of_it(found: str | None, monkeypatch: pytest.Mon
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []
     monkeypatch.setattr(asked_of_channels, "exchanged", lambda *given: found)
-    for other in ("rescaled", "turned_in_one"):
+    for other in ("exchanged_of_other_units", "rescaled", "turned_in_one", "turned_with_friction"):
         monkeypatch.setattr(asked_of_channels, other, lambda *given: None)
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])
     poor = [Score("1", "validation", "T1", 20.0, 1.0)]
     assert asked_of_channels.asked_where_poor(data, Plate(), poor, lambda: None, told.append) == found  # pyright: ignore
     assert told[0].startswith("The validation fit is poor: trying short refits")
+    assert "seem" not in asked_of_channels.NOTHING_CHANGED, "it was said of a torque of the other sign"
     assert told[1:] == [asked_of_channels.FAR_BETTER_SO if found else asked_of_channels.NOTHING_CHANGED]

@@ -74,9 +74,12 @@ def test_factors_of_times_and_angles_are_tried_where_the_unit_has_them() -> None
     changes = list(rescaled._changes(type("Oven", (), {"inputs": inputs, "outputs": outputs})))  # pyright: ignore
     factors = {name: {c.factor for c in changes if name in c.read} for name in ("speed", "force", "T0")}
     assert len(factors["force"]) == 6 and factors["T0"] == set()
-    assert sorted(factors["speed"] - factors["force"]) == pytest.approx([1 / 60, np.pi / 180, 180 / np.pi, 60.0])
+    own = [1 / 60, np.pi / 180, np.pi / 30, 30 / np.pi, 180 / np.pi, 60.0]
+    assert sorted(factors["speed"] - factors["force"]) == pytest.approx(own)
+    assert 10.0 in factors["force"] and 10.0 not in factors["speed"], "nothing tells it from 9.55"
     told = {c.factor: c.question for c in changes if "speed" in c.read}
     assert (
         told[180 / np.pi] == "Is the scale of speed right? With values 57.3 times as large (rad and deg differ by that)"
     )
+    assert told[np.pi / 30].endswith("With values 9.55 times smaller (rpm and rad/s differ by that)")
     assert told[1 / 60].endswith("With values 60 times smaller (s and min differ by that)")

@@ -71,7 +71,7 @@ def test_nothing_is_found_where_nothing_moves(
     rotor: GreyBoxModel, function: Callable[..., Any], other: np.ndarray, at: str
 ) -> None:
     runs = data((MOVING, STILL, "estimation"), (MOVING, other, "estimation"), (MOVING, MOVING, "validation"))
-    message = f"no output moves in the experiments of role 'estimation' (speed: {at}, constant throughout)"
+    message = f"recordings: no output moves in the experiments of role 'estimation' (speed: {at}, constant throughout)"
     with pytest.raises(gt.UserError, match=re.escape(message)):
         function(rotor, runs)
     assert message in str(gt.fit_many(rotor, [runs], return_exceptions=True)[0])

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from fractions import Fraction
+
 import pytest
 
 from greybox_torch.checking.dimensions import NONE, SECOND, dimension_of
@@ -42,3 +44,4 @@ def test_shown() -> None:
     assert str(speed.times(SECOND, -1)) == "rad/s^2"
     assert str(dimension_of("kg/m^3")) == "kg/m^3"
     assert str(dimension_of("m^3/(kg s^2)")) == "m^3/(kg s^2)"
+    assert str(speed.to_the(Fraction(1, 2))) == "1/s^(1/2)", "s^1/2 reads as half of it"

@@ -140,7 +140,7 @@ FAULTS = {
     ),
     "start that is divided by": (
         rate("p.b * x.speed", "0.0 * u.voltage / x.speed"),
-        "warning", "no numbers at the start (states at their start values, measured ones and inputs at zero), where speed = 0",
+        "warning", "no number at the start (states at their start values, measured ones and inputs at zero), where speed = 0",
         "a denominator", "/ x.speed",
     ),
     "parameter of zero that is divided by": (

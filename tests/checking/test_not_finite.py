@@ -1,4 +1,4 @@
-"""Equations that are no numbers: at every value an error and nothing else, at the start of what was recorded where there are recordings."""
+"""Equations that give no number: at every value an error and nothing else, at the start of what was recorded where there are recordings."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ def test_the_start_is_the_one_of_the_recordings(data_set) -> None:
     """Seen: "where gap = 0" of a card whose recordings begin at 4 mm."""
     names, never_zero, zero = {"force": "N", "gap": "m"}, [0.01] * 20, [0.0] * 20
     assert at_the_start(Gap()) == [
-        "the equations are no numbers at the start (states at their start values, measured ones and inputs at zero), where gap = 0"
+        "the equations give no number at the start (states at their start values, measured ones and inputs at zero), where gap = 0"
     ]
     recorded = [{"force": [1.0] * 20, "gap": gap} for gap in (never_zero, zero)]
     assert at_the_start(Gap(), data_set(names, recorded[:1])) == []
     assert at_the_start(Gap(), data_set(names, recorded)) == [
-        'the equations are no numbers at the start of "run 2", where gap = 0'
+        'the equations give no number at the start of "run 2", where gap = 0'
     ]
 
 
@@ -52,7 +52,7 @@ def test_no_number_anywhere_is_one_error() -> None:
 
     (found,) = examine(Lost).findings
     assert (found.level, found.topic) == ("error", "numbers")
-    assert "no numbers (nan or inf) at any of the values" in found.found
+    assert "no number (nan or inf) at any of the values" in found.found
     assert not gt.check(Lost()).usable
 
 
@@ -78,7 +78,7 @@ def shares(initial: float | Literal["measured"], rest: float) -> type[gt.GreyBox
 
 def test_many_states_within_narrow_limits_are_no_error() -> None:
     """Seen: no random point is within all limits, and a model that can be simulated "cannot be used: 1 error"."""
-    never = "no numbers (nan or inf) at any of the values that were tried"
+    never = "no number (nan or inf) at any of the values that were tried"
     for made in (shares(0.5, 0.0), shares("measured", 0.0)):
         found = examine(made).findings
         assert {f.level for f in found} == {"warning"}
@@ -86,7 +86,7 @@ def test_many_states_within_narrow_limits_are_no_error() -> None:
     (found,) = examine(shares(0.05, 1.0)).findings
     assert found.level == "warning"
     assert never in found.found
-    assert found.found.endswith("but they are where a simulation begins")
+    assert found.found.endswith("but they do where a simulation begins")
     assert [f.level for f in examine(shares(0.5, 1.0)).findings] == ["error"]
 
 
@@ -106,7 +106,7 @@ def test_where_first_samples_are_missing_the_next_known_ones_are_the_start(data_
     missing = [float("nan")]
     recorded = [{"force": [*missing, *[1.0] * 19], "gap": [*missing, *[gap] * 19]} for gap in (0.01, 0.0)]
     told = [at_the_start(Gap(), data_set({"force": "N", "gap": "m"}, [one])) for one in recorded]
-    assert told == [[], ['the equations are no numbers at the start of "run 1", where gap = 0']]
+    assert told == [[], ['the equations give no number at the start of "run 1", where gap = 0']]
 
 
 def test_numbers_far_from_zero_alone_are_enough() -> None:
@@ -175,4 +175,4 @@ def test_a_line_of_which_random_points_have_told_is_not_told_again(data_set) -> 
 
     recorded = [{"command": [1.0] * 20, "pressure": [3e5 if k < 10 else 1e5 for k in range(20)]}]
     found = [f.found for f in gt.check(Tank(), data_set({"command": "", "pressure": "Pa"}, recorded)).findings]
-    assert sum("no numbers" in one for one in found) == 1
+    assert sum("no number" in one for one in found) == 1

@@ -123,7 +123,7 @@ def test_checkpoint_that_is_damaged(motor_folder: Make) -> None:
     assert "broken.safetensors: damaged" in result.stderr
     result = greybox("compare", folder, str(folder / "nowhere"))
     assert result.exit_code == 2
-    assert "nowhere.safetensors: no such file" in result.stderr
+    assert "nowhere: no such file or folder" in result.stderr
 
 
 @pytest.mark.usefixtures("unpainted")

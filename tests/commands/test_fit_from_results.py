@@ -46,4 +46,4 @@ def test_effects_are_estimated_too(motor_folder: Make) -> None:
 def test_refuses_what_is_no_checkpoint(motor_folder: Make) -> None:
     result = greybox("fit", motor_folder(), "--checkpoint", "nowhere/model")
     assert result.exit_code == 2
-    assert "checkpoint nowhere/model.safetensors: no such file" in result.stderr
+    assert "checkpoint nowhere/model: no such file or folder" in result.stderr

@@ -103,6 +103,12 @@ def test_other_places_where_it_is_looked_for(crane: Path, edit: Edit, entry: str
     assert "constants = { rope = 0.9 } in every [[experiment]]" in told(crane)
 
 
+def test_a_whole_number_beyond_any_float_is_answered(crane: Path, edit: Edit) -> None:
+    """Seen, by random cards: OverflowError."""
+    edit(crane, 'rope = { unit = "m" }', f"rope = {{ value = {'9' * 400} }}")
+    assert "constants = { rope = 999" in told(crane)
+
+
 def test_an_expression_of_no_column(crane: Path, edit: Edit) -> None:
     edit(crane, 'rope = { unit = "m" }', 'rope = { expr = "0.9" }')
     assert "no expr and constants = { NAME = … } in every [[experiment]]" in told(crane)

@@ -149,7 +149,9 @@ def test_all_missing_channel(bench: Path) -> None:
 
 def test_columns_of_different_length(bench: Path) -> None:
     np.savez(bench / "sweep.npz", u_val=np.arange(20.0), y=np.arange(19.0))
-    with pytest.raises(UserError, match=r'sweep.npz: columns differ in length: "u_val" has 20, "y" has 19'):
+    with pytest.raises(
+        UserError, match=r'sweep.npz: columns differ in length: "u_val" has 20, "y" has 19; .* join = "time" joins'
+    ):
         load_dataset(bench / "dataset.toml")
 
 

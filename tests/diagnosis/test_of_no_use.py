@@ -18,7 +18,8 @@ def test_a_negative_validation_fit_is_told_beside_what_was_found() -> None:
     (told,) = found.of_no_use
     assert told == (
         "The model with what was found simulates the validation experiments worse than a constant would (validation fit -94.3 %): it is "
-        "of no use for predicting them, though it explains much of the error over short windows."
+        "of no use for predicting them, though it explains much of the error over short windows. A column may have another sign, scale or "
+        "meaning than the card says, or a term of the equations the wrong sign."
     )
     assert notes(found)[0] == told and told in Headline.of(found).beside
 

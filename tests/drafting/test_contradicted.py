@@ -138,6 +138,21 @@ def test_not_told(tmp_path: Path, line: str) -> None:
     assert contradictions(written(tmp_path, line)) == []
 
 
+def test_exchanged_columns_are_told_though_they_have_a_scale(tmp_path: Path) -> None:
+    """Seen: the columns of a motor in 1/min and of a belt in m/min, exchanged and scaled, and not a word."""
+    lines = (
+        'motor = { column = "v_Band [m/min]", unit = "rad/s", scale = 0.105 }',
+        'belt = { column = "n_Motor [1/min]", unit = "m/s", scale = 0.0167 }',
+    )
+    card = tmp_path / "dataset.toml"
+    card.write_text(CARD.format(time="sample_time = 0.1", channels="\n".join(lines)), encoding="utf-8")
+    found = contradictions(card)
+    assert [one.place for one in found] == ['channel "motor"', 'channel "belt"']
+    assert found[0].write.startswith('column = "n_Motor [1/min]", which "belt" has: by their names')
+    card.write_text(CARD.format(time="sample_time = 0.1", channels=lines[0]), encoding="utf-8")
+    assert contradictions(card) == [], "one alone may be measured by means of the other"
+
+
 def test_of_an_experiments_own_column(tmp_path: Path) -> None:
     card = written(tmp_path, 'a = { column = "x", unit = "rad/s" }')
     card.write_text(card.read_text() + 'columns = { a = "n_rpm" }\n')

@@ -88,3 +88,45 @@ def test_input_and_output_in_files_of_their_own_are_told(tmp_path: Path) -> None
         )
     (tmp_path / "out.csv").write_text("\n".join(f"{v:.9g}" for v in Q[:-1]))
     assert not any("one run" in line for line in gt.card(files).open)
+
+
+def test_what_further_files_lack_and_do_not_say_is_told(tmp_path: Path) -> None:
+    """Seen: three files, the second without an output, the third without the input and in milliseconds, and only the first was told of."""
+    (tmp_path / "a.csv").write_text(
+        "t [s],voltage,angle [deg]\n" + "".join(f"{t},{v},{q}\n" for t, v, q in zip(T, V, Q, strict=True))
+    )
+    scipy.io.savemat(tmp_path / "b.mat", {"t": T, "voltage": V, "angle_slow": Q[::5]})
+    scipy.io.savemat(tmp_path / "c.mat", {"t_ms": 1000 * T, "torque": V, "angle_c": Q})
+    told = gt.card([tmp_path / f"{name}" for name in ("a.csv", "b.mat", "c.mat")], Arm()).open
+    assert (
+        told[0]
+        == '[[experiment]] "b", angle: no column fits; of another length: angle_slow; else leave the experiment out'
+    )
+    assert told[1] == '[[experiment]] "c", voltage: no column fits; left over: torque; else leave the experiment out'
+    assert told[2].startswith(
+        '[[experiment]] "c", angle: the name of "angle_c" says no unit: it is converted from deg, as'
+    )
+    assert told[3].startswith(
+        '[[experiment]] "c", time: "t_ms" is in ms, and that of the first file in s; expected one unit'
+    )
+    assert len(told) == 4
+
+
+def test_a_column_inside_a_structure_is_told_with_those_beside_it(tmp_path: Path) -> None:
+    """Seen: 'no column "Vitesse bande"; found log', and not a word of log.slow.v_belt."""
+    scipy.io.savemat(tmp_path / "a.mat", {"log": {"t": T, "u": V, "slow": {"y": Q[::5]}}})
+    card = tmp_path / "dataset.toml"
+    card.write_text(
+        'time = "log.t"\n[channels]\nvoltage = { column = "log.u" }\nangle = { column = "angle" }\n'
+        '[[experiment]]\nname = "a"\nfile = "a.mat"\n'
+    )
+    with pytest.raises(gt.UserError, match=r'no column "angle".*; found log\.t, log\.u, log\.slow\.y'):
+        gt.load_dataset(card)
+
+
+def test_decimal_commas_between_commas_are_told(tmp_path: Path) -> None:
+    """Seen: "no column #1; found 3 columns of numbers, the first of which is #1"."""
+    rows = "".join(f"03.11.2025,07:15:0{k},000,0,00,-1,32,0,060,40,0\n" for k in range(9))
+    (tmp_path / "a.csv").write_text(f"Belt 3, drive A, Mueller\n\nDatum,Uhrzeit,M [Nm],n [1/min],v [m/min],T\n{rows}")
+    with pytest.raises(gt.UserError, match=r"has a number in #1 and nothing but.* decimal commas, semicolons or tabs"):
+        gt.card(tmp_path / "a.csv", Arm())

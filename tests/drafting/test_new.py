@@ -75,8 +75,9 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["3d"], "--name 3d: expected a name"),
-        (["a/b"], "expected a name"),
+        (["3d"], "error: NAME 3d: expected letters, digits, hyphens and underscores, beginning with a letter"),
+        (["a/b"], "expected letters"),
+        (["my press"], "NAME my press: expected letters"),
         (["class"], None),
         (["a", "--like", "motr"], '--like motr: expected one of motor, pendulum, two_mass, tank, thermal (did you mean "motor"?)'),
         (["a", "--out", "a.txt"], "--out a.txt: expected a file that ends in .py"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pytest
 import torch
 
 import greybox_torch as gt
@@ -40,6 +42,14 @@ def test_agrees_with_simulate(tmp_path: Path, machine: Machine) -> None:
         batch = made(time[:30], torch.stack([u, 0.5 * u])[:, :30], x0.expand(2, -1))
     torch.testing.assert_close(batch[0], found[:30], rtol=1e-12, atol=1e-14)
     assert (batch[1] - batch[0]).abs().max() > 1e-6
+
+
+def test_inputs_without_a_column_each_are_refused_in_words(tmp_path: Path, machine: Machine) -> None:
+    """Seen: "IndexError: too many indices" of a single input with one number for each time."""
+    time, u, x0 = driven(machine)
+    expected = re.escape(f"u: found the shape ({len(time)},), expected (..., {len(time)}, {u.shape[-1]})")
+    with pytest.raises(ValueError, match=expected):
+        module_of(tmp_path, machine)(time, u[:, 0], x0)
 
 
 def test_agrees_on_recordings(tmp_path: Path, recorded: Machine) -> None:

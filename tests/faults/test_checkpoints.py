@@ -66,7 +66,7 @@ def test_no_tensors(spoilt: Path, answer: Answer, content: bytes) -> None:
         ("model.txt", "no such file"),
         ("a\0b", "embedded null byte"),
         ("x" * 400, "checkpoint"),
-        ("dataset.toml", "no such file"),
+        ("dataset.toml", "is a data card, no checkpoint"),
     ],
 )
 def test_name(answer: Answer, name: str, message: str) -> None:

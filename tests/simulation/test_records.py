@@ -66,6 +66,10 @@ def test_ways_to_write_a_unit(motor: GreyBoxModel, data_set: Any, unit: str) -> 
         ),
         ({"voltage": "V", "speed": "rpm"}, "[channels] speed: unit is 'rpm', model Motor expects 'rad/s'"),
         (
+            {"voltage": "mV", "speed": "rpm"},
+            "[channels]: 2 problems:\n  voltage: unit is 'mV', model Motor expects 'V'",
+        ),
+        (
             {**UNITS, "torque": "N m"},
             "[channels] torque: model Motor has no such signal; expected one of voltage, speed",
         ),

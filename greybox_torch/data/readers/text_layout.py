@@ -83,8 +83,14 @@ def layout_of(path: Path, file: TextIO, columns: Collection[str]) -> Layout:
     if found is None:
         names = _likely_names(head, wanted)
         require(path, wanted, names)
+        if max(numbered.values()) >= len(names):
+            raise UserError(
+                f"{path}: no column {', '.join(numbered)}; found {len(names)} columns, the first of which is #1"
+            )
+        commas = "; if numbers have decimal commas, semicolons or tabs have to separate columns" * ("," in head[-1])
         raise UserError(
-            f"{path}: no column {', '.join(numbered)}; found {len(names)} columns of numbers, the first of which is #1"
+            f"{path}: no line among the first {len(head)} has a number in {', '.join(numbered)} and nothing but numbers beside it; "
+            f"expected lines of samples{commas}"
         )
     delimiter, line, names = found
     _check_once(path, line, wanted, names)

@@ -25,6 +25,7 @@ from greybox_torch.diagnosis.describe.profiles import (
     unit_at,
     with_samples,
 )
+from greybox_torch.diagnosis.describe.sign_of_term import sign_of_term
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
 from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.describe.without_unit import without_unit
@@ -143,9 +144,9 @@ def _effect(
         form=mechanism.nature if mechanism.free else "",
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),
+        of_sign=sign_of_term(state.current, final, attachment),
         limited=why_limited(uncapped, limit, gain, study.settings),
         size=account.size,
-        meanings={p.name.removeprefix(own): p.description for p in model.declared_parameters if p.name.startswith(own)},
     )
 
 

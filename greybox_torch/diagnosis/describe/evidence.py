@@ -61,7 +61,8 @@ def sentences(
     asked = state.memory_step
     lines += [] if asked is None or asked in state.steps else [_memory_sentence(asked)]
     lines += [ceiling_sentence(e) for e in effects if e.ceiling is not None]
-    lines += [f"{spoken_at(e.mechanism, e.port)}: {remark}." for e in effects for remark in e.remarks]
+    remarks = [(e, remark if remark.endswith("?") else f"{remark}.") for e in effects for remark in e.remarks]
+    lines += [f"{spoken_at(e.mechanism, e.port)}: {remark}" for e, remark in remarks]
     spoken_of = {a.prefix: _name(a) for a in state.effects}
     for prefix, gain in gains.items():
         share, interval = _held_out(gain)

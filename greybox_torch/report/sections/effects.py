@@ -156,9 +156,8 @@ def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
         shown = text.measured(
             math.nan if value is None else float(value), None if deviation is None else float(deviation)
         )
-        rows.append(
-            ParameterRow(text.symbol(name), effect.meanings.get(name, ""), shown, text.unit(entry.get("unit", "")))
-        )
+        meaning, unit = entry.get("description", ""), text.unit(entry.get("unit", ""))
+        rows.append(ParameterRow(text.symbol(name), meaning, shown, unit))
         if pitch := effect.pitch(name):
             told = "travel in which it repeats, 2 pi over the order"
             rows.append(ParameterRow(text.symbol("pitch"), told, text.measured(*pitch[:2]), text.unit(pitch[2])))

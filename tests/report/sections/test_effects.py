@@ -34,7 +34,8 @@ def test_what_its_parameters_are(of_kind: Callable[[str], Verdict]) -> None:
     """Seen: F_c, F_s, c, v_s and v_0 without a word of what they are."""
     verdict = of_kind("found")
     (effect,) = verdict.effects
-    effects = Effects.of(replace(verdict, effects=(replace(effect, meanings={"half_gap": "half the play"}),)))
+    meant = {"half_gap": {"value": 0.04, "std": 1e-4, "unit": "rad", "description": "half the play"}}
+    effects = Effects.of(replace(verdict, effects=(replace(effect, parameters=meant),)))
     assert effects is not None and [row.description for row in effects.cards[0].parameters] == ["half the play"]
 
 

@@ -1,0 +1,56 @@
+"""A torque of the other sign on a drive with dry friction that the model lacks: neither slip alone explains the recordings."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+
+COUNT, STEP = 600, 0.02
+
+
+class Drive(gt.GreyBoxModel):
+    """A rotor with viscous friction alone."""
+
+    states = (gt.State("speed", "rad/s", initial="measured"),)
+    inputs = (gt.Input("torque", "N m"),)
+    outputs = (gt.Output("speed", "rad/s"),)
+    parameters = (
+        gt.Parameter("J", 0.4, unit="kg m^2", lower=0.01),
+        gt.Parameter("b", 0.05, unit="N m s/rad", lower=0.0),
+    )
+    ports = (gt.Body("rotor", speed="speed"),)
+
+    def derivative(self, x, u, p, port):
+        return {"speed": (u.torque - p.b * x.speed + port.rotor) / p.J}
+
+    def output(self, x, u, p):
+        return {"speed": x.speed}
+
+
+def recorded(role: Literal["estimation", "validation"], seed: int, sign: float, level: float) -> gt.Recording:
+    draw = np.random.default_rng(seed)
+    torque, speed = np.repeat(draw.uniform(-4.0, 12.0, COUNT // 30), 30), np.zeros(COUNT)
+    for k in range(COUNT - 1):
+        w = speed[k]
+        for _ in range(20):
+            w += STEP / 20 * (torque[k] - 0.1 * w - level * np.tanh(w / 0.1)) / 0.3
+        speed[k + 1] = w
+    given = {"torque": sign * torque, "speed": speed + 0.02 * draw.standard_normal(COUNT)}
+    return gt.Recording.from_arrays(role, given, sample_time=STEP, role=role)
+
+
+@pytest.mark.parametrize(("sign", "level", "asked"), [(-1.0, 5.0, True), (1.0, 5.0, False)])
+def test_the_sign_is_asked_for_with_the_friction_that_lacks(sign: float, level: float, asked: bool) -> None:
+    """Seen: "the channels seem to be what the card says" of a conveyor's torque of the other sign."""
+    data = gt.DataSet([recorded("estimation", 1, sign, level), recorded("validation", 2, sign, level)])
+    question = gt.fit(Drive(), data).question
+    assert (question is not None) is asked, question
+    if question is not None:
+        assert question.startswith(
+            "Is the sign of torque turned, or is the sign of speed turned? So changed, and with Coulomb"
+        )
+        assert "Coulomb friction at rotor, a short refit reaches a mean fit of 9" in question
