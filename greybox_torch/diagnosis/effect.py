@@ -194,7 +194,7 @@ class Effect:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What a reader of the evidence has to know of its parameters and its probability; clauses. What a bound means is told elsewhere."""
+        """What a reader of the evidence has to know of its parameters and its probability; in clauses, but for what a bound means."""
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
         return tuple(filter(None, (self.of_units, self.like, self.of_sign, bounded, *self.limited)))
 
