@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from math import isfinite
 from typing import Any
 
 from greybox_torch.data import DataSet
@@ -242,8 +243,8 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = small_ones(found, by_effect)
-    shown = shown_by_free_runs(study, state, found.gains, judged) if small.keys() == state.prefixes else set[str]()
-    both = [
-        (small.get(a.prefix) if a.prefix not in shown else None, e) for a, e in zip(state.effects, told, strict=True)
-    ]
+    if small.keys() == state.prefixes:
+        shown = shown_by_free_runs(study, state, found.gains, judged)
+        small = {p: why for p, why in small.items() if p not in shown or not isfinite(by_effect[p])}
+    both = [(small.get(a.prefix), e) for a, e in zip(state.effects, told, strict=True)]
     return tuple(e for why, e in both if why is None), tuple(replace(e, why_small=why) for why, e in both if why)

@@ -133,7 +133,7 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
         left=None,
         removed=0.5,
     )
-    monkeypatch.setattr(pipeline, "sizes", lambda *_: {})
+    monkeypatch.setattr(pipeline, "sizes", lambda *_: {FRICTION.prefix: 0.12, BIAS.prefix: 0.12})
     told_of = [Effect("motor", name, 0.9, (), "", {}, 0.0, (), None) for name in ("friction", "bias")]
     monkeypatch.setattr(pipeline, "describe", lambda *_: told_of)
     monkeypatch.setattr(pipeline, "small_ones", lambda *_: dict.fromkeys(small, "why"))
