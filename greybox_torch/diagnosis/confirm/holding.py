@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.not_asked import without_what_free_runs_do_not_need
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
-from greybox_torch.diagnosis.confirm.same_everywhere import drifts
+from greybox_torch.diagnosis.confirm.same_everywhere import CHANCE, CHANCE_FAR_ABOVE, drifts
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.take_back import take_back_weakest
@@ -159,10 +159,12 @@ def _empty(study: Study, state: SearchState, augmented: Final, gains: Mapping[st
 
 def _drifting(study: Study, state: SearchState, judged: Judgement) -> str | None:
     """An offset that is another one in every experiment."""
+    far = judged.left(False)[1] > study.settings.far_above_disturbances
+    chance = CHANCE_FAR_ABOVE if far else CHANCE
     asked = (
         e.prefix
         for e in state.effects
-        if drifts(state.current, judged.problem, study.surroundings[e.port], e, study.budget, judged.begun)
+        if drifts(state.current, judged.problem, study.surroundings[e.port], e, study.budget, judged.begun, chance)
     )
     return next(asked, None)
 

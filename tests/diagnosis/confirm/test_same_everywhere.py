@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from greybox_torch.diagnosis.confirm.free_runs import FreeRuns
-from greybox_torch.diagnosis.confirm.same_everywhere import constant, drifts, same_everywhere
+from greybox_torch.diagnosis.confirm.same_everywhere import CHANCE_FAR_ABOVE, constant, drifts, same_everywhere
 from greybox_torch.diagnosis.settings import SearchBudget
 from greybox_torch.estimate.problem import problem_for
 from greybox_torch.mechanisms.attachment import attach
@@ -39,6 +39,8 @@ def test_drifts_of_one_sign_are_no_constant() -> None:
     assert not constant(np.array([0.0019, 0.0018, 0.0006, 0.0011]), EXACT)
     assert constant(np.array([0.0210, 0.0192, 0.0174, 0.0214]), EXACT)
     assert constant(np.array([0.02]), EXACT[:1])
+    scattering = np.array([-0.0058, -0.0076, -0.0017, -0.0068])  # of an arm's input, 30 times the noise in free runs
+    assert constant(scattering, EXACT, CHANCE_FAR_ABOVE) and not constant(scattering, EXACT)
 
 
 @settings(max_examples=60, deadline=None)
