@@ -48,7 +48,6 @@ def lowest_limit(
         limited_by_a_curve(ceiling, settings, free_runs),
         limited_by_a_larger_rest(size, free_runs, settings),
         limited_by_its_choice(free_runs, settings),
-        limited_by_free_runs(free_runs, settings),
     )
     return min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
 
@@ -140,25 +139,6 @@ def limited_by_its_choice(free_runs: LeftInFreeRuns, settings: DiagnosisSettings
     return Limit(
         settings.highest_probability_by_free_runs,
         "free runs of the validation experiments chose it in the place of what windows preferred, and no recording is left to bear it out",
-    )
-
-
-def limited_by_free_runs(free_runs: LeftInFreeRuns, settings: DiagnosisSettings) -> Limit | None:
-    """What limits findings with which free runs still miss much of what was measured and of the mismatch, far above what disturbances
-    leave, whatever windows show; None for others.
-
-    Seen: a current of up to 3032 A that a controller asked for and a drive limits to 10 A, told as a sensor's lag of 0.26 s (0.97): 1.5
-    times the noise over windows of a fifth of a second, 70 times in free runs, a fit of 53 %.
-    """
-    left = free_runs.of_mismatch
-    if left is None or left <= settings.little_in_free_runs or free_runs.of_measured <= settings.most_of_measured:
-        return None
-    if not free_runs.times_noise > settings.far_above_disturbances:
-        return None
-    return Limit(
-        settings.highest_probability_where_most_is_left,
-        f"free runs of the validation experiments leave {100 * left:.2g} % of the mismatch and miss "
-        f"{100 * free_runs.of_measured:.2g} % of the variance of what was measured",
     )
 
 

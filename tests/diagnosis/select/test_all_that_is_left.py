@@ -107,23 +107,6 @@ def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
         assert "19 % of the mismatch, of which free runs leave 53 %" in limit.why
 
 
-@pytest.mark.parametrize(
-    ("left", "limited"),
-    [
-        (LeftInFreeRuns(0.39, 0.24, 70.0), True),
-        (LeftInFreeRuns(0.14, 0.22, 101.0), False),
-        (LeftInFreeRuns(0.39, 0.1, 70.0), False),
-        (LeftInFreeRuns(0.39, 0.24, 7.0), False),
-        (LeftInFreeRuns(0.39, 0.24, np.nan), False),
-        (LeftInFreeRuns(None, 0.24, 70.0), False),
-    ],
-    ids=["a trolley", "little is left", "followed", "disturbances", "no noise known", "no free run tells"],
-)
-def test_what_free_runs_hardly_follow_is_even_odds_at_most_whatever_windows_show(left_much, left, limited) -> None:
-    limit = lowest_limit(0.01, left_much(0.011), SETTINGS, left, free=False, ceiling=1.0, size=0.7)
-    assert (limit is not None and limit.highest == 0.5 and "leave 39 %" in limit.why) is limited
-
-
 def test_the_lowest_limit_counts(left_much) -> None:
     much, rest = left_much(1.0), LeftInFreeRuns(0.53, times_noise=3.1)
     by_noise = lowest_limit(0.3, much, SETTINGS, LeftInFreeRuns(), free=False, ceiling=None, size=0.9)
