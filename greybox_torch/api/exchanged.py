@@ -79,6 +79,11 @@ def _changes(model: GreyBoxModel) -> Iterator[Change]:
         ]
         for one, other in pairs if len(pairs) <= MOST_ALIKE else ():
             yield Change({one: other, other: one}, f"are the columns of {listed([one, other])} exchanged")
-    for signals in sides:
+    yield from sign_turns(model)
+
+
+def sign_turns(model: GreyBoxModel) -> Iterator[Change]:
+    """The sign of each input and output turned."""
+    for signals in (model.inputs, model.outputs):
         for signal in signals if len(signals) <= MOST_ALIKE else ():
             yield Change({signal.name: signal.name}, f"is the sign of {signal.name} turned", -1.0)

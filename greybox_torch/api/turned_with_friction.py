@@ -5,10 +5,8 @@ Without the friction neither sign fits, so that no turned channel makes the fit 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from greybox_torch.api.exchanged import MOST_ALIKE, asked_of_best
-from greybox_torch.api.short_refits import FOLLOWS, Change, beginnings
+from greybox_torch.api.exchanged import asked_of_best, sign_turns
+from greybox_torch.api.short_refits import FOLLOWS, beginnings
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.problem import make_problem
@@ -32,11 +30,7 @@ def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulato
 
     Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
     """
-    bodies, short, changes = (
-        [p.name for p in model.all_ports if isinstance(p, Body)],
-        beginnings(data),
-        [*_turns(model)],
-    )
+    bodies, short = [p.name for p in model.all_ports if isinstance(p, Body)], beginnings(data)
     if short is None or achieved >= FOLLOWS or not 0 < len(bodies) <= MOST_BODIES:
         return None
     try:
@@ -46,10 +40,4 @@ def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulato
     except (NumericalError, UserError):  # a simulation that overflows says nothing of how fast the bodies are
         return None
     so = f"So changed, and with Coulomb friction at {listed(bodies)}"
-    return asked_of_best(data, rubbing, made, achieved, changes, so)
-
-
-def _turns(model: GreyBoxModel) -> Iterator[Change]:
-    for signals in (model.inputs, model.outputs):
-        for signal in signals if len(signals) <= MOST_ALIKE else ():
-            yield Change({signal.name: signal.name}, f"is the sign of {signal.name} turned", -1.0)
+    return asked_of_best(data, rubbing, made, achieved, list(sign_turns(model)), so)

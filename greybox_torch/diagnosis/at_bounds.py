@@ -25,9 +25,8 @@ def own_at_bounds(
         refit, augmented = (
             with_value(name, v[0], unit) if v and at else "" for v, at in zip(values, at_bound, strict=True)
         )
-        beside += (
-            [name] if effects and augmented and values[1] and values[1][0] != 0.0 else []
-        )  # zero is a limit of physics
+        if effects and augmented and values[1] and values[1][0] != 0.0:  # zero is a limit of physics
+            beside.append(name)
         if not effects:
             told.append(refit)
         elif refit == augmented:

@@ -152,9 +152,8 @@ def _solved(matrix: np.ndarray, wanted: np.ndarray, n_u: int) -> tuple[np.ndarra
     noise = np.sum(np.abs(left) ** 2, axis=0) / (len(matrix) - matrix.shape[1])
     spread = _inverse_diagonal(matrix / scale)
     constant = np.arange(n_u) * (ORDER + 1)
-    there = _excited(
-        matrix, n_u
-    )  # an input that is at rest shows no response, nor does one by the ends of its records alone
+    # An input that is at rest shows no response, nor does one by the ends of its records alone.
+    there = _excited(matrix, n_u)
     gain = np.where(there, found[constant].T / scale[constant], 0.0)
     variance = np.where(there, noise[:, None] * spread[constant] / scale[constant] ** 2, np.inf)
     return gain, variance
