@@ -114,6 +114,11 @@ def sentence(before: Judgement, state: SearchState, searched: Hypothesis, longer
     """
     _, times, experiment = before.left(bool(state.effects))
     shown, then = (s.current.fits[-1].windows.steps for s in (state, longer))
+    if not state.effects and hardly_followed(before):
+        return (
+            f"Free runs hardly follow the validation experiments without effects ({times:.2g} times the noise in {experiment}): windows of "
+            f"{then} samples were searched, too, beside those of up to {shown}."
+        )
     if len(searched.effects) > len(state.effects):
         return (
             f"Over windows of up to {shown} samples what was found first left hardly more than noise, and was taken back: what acts slowly "

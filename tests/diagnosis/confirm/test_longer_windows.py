@@ -239,9 +239,11 @@ def test_a_long_wave_over_a_position_that_no_sensor_shows_is_another_offset_in_e
 @pytest.mark.parametrize(
     ("taken_back", "told"), [(False, "which windows of up to 10"), (True, "left hardly more than noise")]
 )
-def test_what_is_said_of_longer_windows(stub, taken_back: bool, told: str) -> None:
+def test_what_is_said_of_longer_windows(stub, hardly, taken_back: bool, told: str) -> None:
     def state(steps: int) -> Any:
         return stub(effects=(), current=stub(fits=[stub(windows=stub(steps=steps))]))
 
     said = sentence(judgement(stub), state(10), stub(effects=(stub(),) if taken_back else ()), state(20))
     assert told in said and "over windows of 20 samples, too." in said
+    hardly[0] = True
+    assert "Free runs hardly follow" in sentence(judgement(stub), state(10), stub(effects=(stub(),)), state(20))
