@@ -2,7 +2,7 @@
 
 Every scalar of the model becomes a vector of lanes, one lane a window: with AVX-512 these are 8 double precision numbers, else 4, and in
 single precision twice as many. Terms that depend on parameters alone are computed once. Within a step the four stages of the states come
-first, with their sparse Jacobians; then each tangent direction runs through all four stages in registers.
+first, with their sparse Jacobians; then each tangent direction goes through all four in one product.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from collections.abc import Iterable
 from greybox_torch.codegen.derive import Partials
 from greybox_torch.codegen.expression import ARITHMETIC, BOOLEAN, COMPARISONS, FUNCTIONS, LOGIC
 from greybox_torch.codegen.lower import Equations
+from greybox_torch.codegen.tangents import Entry, Transition, added, scaled
 from greybox_torch.codegen.template import PROGRAM
 
 
@@ -28,6 +29,7 @@ def emit(equations: Equations, precision: str) -> str:
     column = {equations.graph.leaf("p", p): k for k, p in enumerate(equations.sensitive)}
     parameter_entries = sorted(_entries(equations.rates_by_parameter[:n_t]), key=lambda entry: column[entry[1]])
     row_of_state = {equations.graph.leaf("x", i): i for i in range(n_x)}
+    transition = _transition(n_t, state_entries, row_of_state, body)
 
     stored_a = [(f"A[{k}]", node) for k, (_, _, node) in enumerate(state_entries)]
     stored_b = [(f"B[{k}][0]", node) for k, (_, _, node) in enumerate(parameter_entries)]
@@ -38,8 +40,8 @@ def emit(equations: Equations, precision: str) -> str:
         "RATES_JACOBIAN": body.statements(rate_rows + stored_a + stored_b),
         "OUTPUTS": body.statements(output_rows),
         "OUTPUTS_JACOBIAN": body.statements(output_rows + stored_c + stored_d),
-        "TIMES_JACOBIAN": _times_jacobian(n_t, state_entries, row_of_state, body),
-        "PROPAGATE": _propagate(n_t),
+        "TRANSITION": transition.matrices(),
+        "PROPAGATE": transition.propagation(),
         "TANGENT_OUTPUT": _tangent_output(n_y, output_states, row_of_state, body),
         **_forced_rows([(i, column[leaf]) for i, leaf, _ in parameter_entries], n_p),
     }
@@ -175,41 +177,15 @@ def _tangent_output(n_y: int, entries: list[tuple[int, int, int]], row_of_state:
     lines = []
     for row in range(n_y):
         of_row = [(k, leaf, node) for k, (i, leaf, node) in enumerate(entries) if i == row]
-        terms = [_scaled(f"z[{row_of_state[leaf]}]", f"C[{k}]", body.is_constant(node)) for k, leaf, node in of_row]
-        lines.append(_assigned(f"s[{row}]", [f"d[{row}]", *terms]))
+        terms = [scaled(f"z[{row_of_state[leaf]}]", f"C[{k}]", body.is_constant(node)) for k, leaf, node in of_row]
+        lines.append(f"s[{row}] = {added([f'd[{row}]', *terms])};")
     return "\n".join(lines)
 
 
-def _times_jacobian(n_t: int, entries: list[tuple[int, int, int]], row_of_state: dict[int, int], body: _Body) -> str:
-    """Statements of ``R = M · A``, by columns, with the sparse Jacobian A whose constant entries are written out."""
-    lines = []
-    for column in range(n_t):
-        of_column = [(k, i, node) for k, (i, leaf, node) in enumerate(entries) if row_of_state[leaf] == column]
-        terms = [_scaled(f"M[{i}][i]", f"A[{k}]", body.is_constant(node)) for k, i, node in of_column]
-        assigned = _assigned(f"R[{column}][i]", terms or ["vec{}"])
-        lines.append(f"UNROLL for (int i = 0; i < NT; i++) {assigned}")
-    return "\n".join(lines)
-
-
-def _propagate(n_t: int) -> str:
-    """Statements of ``q = S · q + sum of M[s] · b[s]`` over the stages s, with the partial derivatives b by parameter c."""
-    states = range(n_t)
-    lines = [f"vec w{i} = {' + '.join(f'S[{j}][{i}] * q[{j}]' for j in states)};" for i in states]
-    lines.append("for (long k = first[c]; k < first[c + 1]; k++) {")
-    lines.append("const long r = row[k];")
-    for s in range(4):
-        lines.append(f"const vec b{s} = B[k][{s}];")
-    for i in states:
-        lines.append(f"w{i} += {' + '.join(f'M[{s}][r][{i}] * b{s}' for s in range(4))};")
-    return "\n".join([*lines, "}", *(f"q[{i}] = w{i};" for i in states)])
-
-
-def _scaled(source: str, entry: str, constant: float | None) -> str:
-    return source if constant == 1.0 else f"-{source}" if constant == -1.0 else f"{entry} * {source}"
-
-
-def _assigned(target: str, terms: list[str]) -> str:
-    return f"{target} = {' + '.join(terms)};".replace("+ -", "- ")
+def _transition(n_t: int, entries: list[tuple[int, int, int]], row_of_state: dict[int, int], body: _Body) -> Transition:
+    """How tangents go through a step, ``entries`` those of the Jacobian by the states that tangents are of."""
+    columns = ((k, i, row_of_state[leaf], node) for k, (i, leaf, node) in enumerate(entries))
+    return Transition.of(n_t, {(i, j): Entry(k, body.is_constant(node)) for k, i, j, node in columns if j < n_t})
 
 
 def _forced_rows(entries: list[tuple[int, int]], n_p: int) -> dict[str, str]:

@@ -68,25 +68,12 @@ INLINE void outputs(const vec *x, const vec *u, const vec *p, const vec *h, vec 
 INLINE void outputs_jacobian(const vec *x, const vec *u, const vec *p, const vec *h, vec *y, vec *C, vec (*D)[NY]) {
 /*OUTPUTS_JACOBIAN*/
 }
-INLINE void times_jacobian(const vec (*M)[NT], const vec *A, vec (*R)[NT]) {
-/*TIMES_JACOBIAN*/
-}
 // Partial derivatives by parameters are kept without zeros: those by parameter c are B[first[c]] to B[first[c + 1] - 1], in rows row[...]; by a
 // start state, none.
 static const short first[NS + 2] = {/*FIRST_ROWS*/}, row[NB] = {/*ROWS*/};
-// One Runge-Kutta step is linear in the tangents: q goes over to S q + sum of M[s] b[s], b[s] the partial derivatives by a parameter in stage s.
-// Matrices are stored by columns. They are computed once a step, backwards through the stages; then every direction costs one product with S.
-INLINE void transition(vec H, const vec (*A)[NA], vec (*M)[NT][NT], vec (*S)[NT]) {
-  vec P[NT][NT];
-  const vec sixth = H / (real)6, third = H / (real)3, half = H * (real)0.5;
-  for (int j = 0; j < NT; j++) UNROLL for (int i = 0; i < NT; i++) M[3][j][i] = i == j ? sixth : vec{}, S[j][i] = splat(i == j);
-  for (int s = 3; s >= 0; s--) {
-    times_jacobian(M[s], A[s], P);
-    for (int j = 0; j < NT; j++) UNROLL for (int i = 0; i < NT; i++) {
-      S[j][i] += P[j][i];
-      if (s) M[s - 1][j][i] = (s == 3 ? H : half) * P[j][i] + (i != j ? vec{} : s == 1 ? sixth : third);
-    }
-  }
+// Once a step: what takes tangents through it. Then every direction costs one product with S.
+static __attribute__((noinline)) void transition(vec H, const vec (*A)[NA], vec (*M)[NT][NT], vec (*S)[NT]) {
+/*TRANSITION*/
 }
 INLINE void tangent_output(const vec *C, const vec *d, const vec *z, vec *s) {
 /*TANGENT_OUTPUT*/
