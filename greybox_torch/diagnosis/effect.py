@@ -131,7 +131,7 @@ class Effect:
     """Of an unknown effect that is no curve over one signal: what it is instead, as a noun."""
 
     equation: str = ""
-    """What it adds at its port, as one would write it into the model's class, or in words where that is no formula; "" for a curve."""
+    """What it adds at its port, as one would write it into the model's class, or in words where that is no formula; "" for a bent curve."""
 
     made_up_for: str = ""
     """Where the recordings do not show it, as the re-estimated model makes up for it: how that is known, in words."""

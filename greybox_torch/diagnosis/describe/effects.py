@@ -27,6 +27,7 @@ from greybox_torch.diagnosis.describe.profiles import (
 )
 from greybox_torch.diagnosis.describe.sign_of_term import sign_of_term
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.describe.straight_line import straight_line
 from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
@@ -116,10 +117,16 @@ def _effect(
     curve = settled_curve(attachment, around, final) or over_data(study, state.current, attachment, final.problem)
     told = (study.settings, study.beliefs, final.values(), borne_out)
     members = None if taken is None else one_of(model.base, taken, probability, *told)
-    parameters, own = _parameters(model, attachment, final), f"{attachment.prefix}."
+    parameters, prefix = _parameters(model, attachment, final), f"{attachment.prefix}."
     if members is not None and (first := parameters.get(members.members[0].parameter)):
         members = members.finding_with(first["value"])
     named = partial(signal_name, model.base, site)
+    own = "" if curve is None else named(curve.signal)
+    curve = as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1])
+    memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
+    line = ""
+    if mechanism.free and memory is None and not mechanism.kinematic and curve is not None:
+        line = straight_line(curve, site, own)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,
@@ -129,8 +136,8 @@ def _effect(
         parameters=parameters,
         explained=round(account.explained, 4),
         alternatives=alternatives,
-        curve=as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1]),
-        memory=remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None,
+        curve=curve,
+        memory=memory,
         profiles=profiles,
         explanation=mechanism.explanation,
         source=mechanism.source,
@@ -139,8 +146,8 @@ def _effect(
         timelines=timelines,
         one_of=members,
         law=mechanism.name,
-        equation=equation(attachment, site, around, named, list(parameters)),
-        at_bounds=tuple(n.removeprefix(own) for n in at_bounds(final.problem) if n.startswith(own)),
+        equation=line or equation(attachment, site, around, named, list(parameters)),
+        at_bounds=tuple(n.removeprefix(prefix) for n in at_bounds(final.problem) if n.startswith(prefix)),
         form=mechanism.nature if mechanism.free else "",
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),

@@ -1,0 +1,54 @@
+"""An unknown effect whose curve is a straight line, as one would write it into the model's class.
+
+The commonest omission in models of rooms, vessels and drives is a recorded input, or a loss, that acts in proportion. The library has no
+name for it, and a curve of a dozen heights does not say how simple it is.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from greybox_torch.diagnosis.digits import digits
+from greybox_torch.diagnosis.effect import Curve
+from greybox_torch.model import Balance, Body, Coupling
+from greybox_torch.model.ports import Port
+
+STRAIGHT = 0.01
+"""Share of a curve's variance along the records up to which what is left of a straight line is the imprecision of its heights."""
+
+NEXT_TO_NOTHING = 0.03
+"""Share of its reach up to which what a line is at zero is left out."""
+
+
+def straight_line(curve: Curve, site: Port, signal: str) -> str:
+    """``port.NAME += slope * signal + constant`` where a learned curve is a straight line over what the records visit; "" elsewhere.
+
+    With a factor: where the curve is the same everywhere, what multiplies it.
+
+    Args:
+        signal: the model's own name of what the curve is over.
+    """
+    if not isinstance(site, Body | Coupling | Balance):
+        return ""
+    visits = _visits(curve)
+    mean = float(np.average(curve.force, weights=visits))
+    variance = float(np.average((curve.force - mean) ** 2, weights=visits))
+    if curve.factor is not None:
+        flat = variance < STRAIGHT * mean**2 and curve.factor.value != 0
+        return f"port.{site.name} += {digits(mean / curve.factor.value, 3)} * {curve.factor.signal}" if flat else ""
+    slope, at_zero = np.polyfit(curve.values, curve.force, 1, w=np.sqrt(visits))
+    left = curve.force - slope * curve.values - at_zero
+    if not variance or np.average(left**2, weights=visits) > STRAIGHT * variance:
+        return ""
+    term = f"{digits(float(slope), 3)} * {signal}"
+    if abs(at_zero) < NEXT_TO_NOTHING * np.ptp(curve.force):
+        return f"port.{site.name} += {term}"
+    return f"port.{site.name} += {term} {'-' if at_zero < 0 else '+'} {digits(abs(float(at_zero)), 3)}"
+
+
+def _visits(curve: Curve) -> np.ndarray:
+    """How many samples lie near each value of the curve (n,)."""
+    if curve.seen is None or not curve.seen.any():
+        return np.ones(len(curve.values))
+    share = (curve.values - curve.values[0]) / (curve.values[-1] - curve.values[0])
+    return curve.seen[np.minimum((share * len(curve.seen)).astype(int), len(curve.seen) - 1)].astype(float)
