@@ -33,10 +33,11 @@ from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest_limit
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest, lowest_limit
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
+from greybox_torch.diagnosis.select.told_from_time import limited_by_time
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.in_unit import in_unit
@@ -107,10 +108,13 @@ def _effect(
     uncapped, alternatives = _probability(study, state, attachment, taken, borne_out)
     remaining, free = remaining_share(state.plain, state.current, study.settings), attachment.mechanism.free
     ceiling = None if taken is None else ceiling_share(taken, state.memory_step)
-    limit = lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=account.size)
-    probability = uncapped if limit is None else min(uncapped, limit.highest)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
+    limit = lowest(
+        limited_by_time(local, study.problem.records, study.settings),
+        lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=account.size),
+    )
+    probability = uncapped if limit is None else min(uncapped, limit.highest)
     profiles = _profiles(study, state, model, attachment, site, local)
     timelines = () if gain is None else gain.timelines
     mechanism, around = attachment.mechanism, study.surroundings[attachment.port]
@@ -124,9 +128,8 @@ def _effect(
     own = "" if curve is None else named(curve.signal)
     curve = as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1])
     memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
-    line = ""
-    if mechanism.free and memory is None and not mechanism.kinematic and curve is not None:
-        line = straight_line(curve, site, own)
+    plain_curve = mechanism.free and memory is None and not mechanism.kinematic
+    line = straight_line(curve, site, own) if plain_curve and curve is not None else ""
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,

@@ -43,12 +43,16 @@ def lowest_limit(
     size: float,
 ) -> Limit | None:
     """What limits a finding most, of all that limits it; None where nothing does. Arguments as for the functions below."""
-    limits = (
+    return lowest(
         limited_by_what_is_left(share, left, settings, free_runs, free=free),
         limited_by_a_curve(ceiling, settings, free_runs),
         limited_by_a_larger_rest(size, free_runs, settings),
         limited_by_its_choice(free_runs, settings),
     )
+
+
+def lowest(*limits: Limit | None) -> Limit | None:
+    """The lowest of ``limits``, None where there is none."""
     return min((one for one in limits if one is not None), key=lambda one: one.highest, default=None)
 
 
