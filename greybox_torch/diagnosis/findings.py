@@ -36,6 +36,7 @@ from greybox_torch.diagnosis.selection import Selection
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.estimate.comparison import mean_fit
 from greybox_torch.simulation.side_by_side import side_by_side
 
 FITTING = "final fits on whole records"
@@ -66,8 +67,10 @@ class Findings(Selection):
         """What the effects leave in free runs of the validation experiments; over the longest windows if those alone judge."""
         before, after = self.sums
         share = after / before if np.isfinite(before) and before > 0 else 0.0
-        times = 0.0 if self.judged.by_windows_alone else self.judged.left(True)[1]
-        return LeftInFreeRuns(share, self.judged.missed, times, self.state.by_free_runs)
+        if self.judged.by_windows_alone:
+            return LeftInFreeRuns(share, self.judged.missed, 0.0, self.state.by_free_runs)
+        times, fit = self.judged.left(True)[1], mean_fit(self.judged.judging(self.judged.with_effects).scores)
+        return LeftInFreeRuns(share, self.judged.missed, times, self.state.by_free_runs, fit)
 
     @property
     def removed(self) -> float:

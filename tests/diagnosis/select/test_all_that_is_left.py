@@ -11,6 +11,7 @@ from greybox_torch.diagnosis.select.all_that_is_left import (
     LeftInFreeRuns,
     limited_by_a_curve,
     limited_by_a_larger_rest,
+    limited_by_a_poor_fit,
     limited_by_what_is_left,
     lowest_limit,
 )
@@ -122,3 +123,24 @@ def test_what_free_runs_chose_in_the_place_of_what_windows_preferred_has_even_od
     limit = lowest_limit(*asked, LeftInFreeRuns(0.011, chose=True), free=False, ceiling=1.0, size=0.8)
     assert limit is not None and limit.highest == 0.5 and "no recording is left" in limit.why
     assert lowest_limit(*asked, LeftInFreeRuns(0.011), free=False, ceiling=1.0, size=0.8) is None
+
+
+@pytest.mark.parametrize(
+    ("mean_fit", "share", "times", "limited"),
+    [
+        (16.0, 0.33, 340.0, True),
+        (53.0, 0.39, 70.0, True),
+        (61.0, 0.39, 70.0, False),
+        (-39.0, 0.08, 370.0, False),
+        (53.0, 0.39, 9.0, False),
+    ],
+)
+def test_a_name_that_free_runs_follow_poorly_with_has_even_odds(
+    mean_fit: float, share: float, times: float, limited: bool
+) -> None:
+    """The multicopter and the trolley; beside them a good fit, a waved rail of which 8 % is left, and a rest near the noise."""
+    limit = limited_by_a_poor_fit(LeftInFreeRuns(share, times_noise=times, mean_fit=mean_fit), SETTINGS)
+    assert (limit is not None) == limited
+    if limit is not None:
+        assert limit.highest == 0.5
+        assert limit.why.startswith(f"free runs follow the validation experiments to {mean_fit:.2g} % on the average")
