@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.deadline import Deadline, until
+from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_the_curve
 from greybox_torch.diagnosis.confirm.curve_beside_laws import sized_by_free_runs
 from greybox_torch.diagnosis.confirm.curve_instead import curve_instead
 from greybox_torch.diagnosis.confirm.far_better import Standing
@@ -139,6 +140,7 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
         return found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
     if instead is not None:
         return (*instead, (*found[3], *said), whole)
+    found = (*found[:3], (*found[3], *(s for s in said if s not in found[3])), found[4])
     with until(selection.schedule.judging):
         sized, in_time = or_else(partial(sized_by_free_runs, study, found[0], others, *found[1:3]), lambda: found[1])
     return (found[0], sized, *found[2:4], found[4] and whole and in_time)
@@ -158,7 +160,10 @@ def _instead(
             return instead, (chosen_by_free_runs(instead, state, judged),), whole
     if instead is None and whole and not state.effects:
         instead, whole = or_else(partial(memory_instead, study, searched, others, judged), lambda: None)
-    return instead, (), whole
+    said = ()
+    if instead is None and whole and not state.effects:
+        said, whole = or_else(partial(said_of_the_curve, study, searched, others, judged), tuple)
+    return instead, said, whole
 
 
 def _curve_is_asked(searched: SearchState, found: Judged) -> bool:

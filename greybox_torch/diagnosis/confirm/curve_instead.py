@@ -24,10 +24,7 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
     A name of many amplitudes may go farther than a curve of few knots, and what joins it takes up what it lacks. Seen: a dip and a bump of
     a rail, told as a ripple of six harmonics and a curve; neither lasted, and 56 times the noise was left without a name.
     """
-    settings = study.settings
-    asked = (*(() if state.in_place_of is None else (state.in_place_of,)), *state.steps)
-    own = (s for s in asked if not s.parent.effects and over_the_same_windows(s.parent, state.plain))
-    step = next((s for s in own if curves_of(study, s)), None)
+    settings, step = study.settings, first_with_curves(study, state)
     if others is None or step is None or times_noise(study.problem, state.plain, settings) <= settings.above_noise:
         return None
     study.working_on("asking held-out experiments about a curve in the place of names")
@@ -45,6 +42,13 @@ def curve_instead(study: Study, state: SearchState, others: HeldOut | None, judg
         return judged.mismatch(True) if state.effects else by_it.mismatch(False)
 
     return leaving_far_less(study, curve, others, judged, left)
+
+
+def first_with_curves(study: Study, state: SearchState) -> SelectionStep | None:
+    """The first step, beside no effect, in which free curves gained more than chance."""
+    asked = (*(() if state.in_place_of is None else (state.in_place_of,)), *state.steps)
+    own = (s for s in asked if not s.parent.effects and over_the_same_windows(s.parent, state.plain))
+    return next((s for s in own if curves_of(study, s)), None)
 
 
 def curves_of(study: Study, step: SelectionStep) -> list[RankedCandidate]:

@@ -5,16 +5,18 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
+import greybox_torch.diagnosis.confirm.beyond_free_runs as beyond
+from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_the_curve, said_of_windows
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
 def states(*prefixes: str) -> Any:
     effects = [
-        SimpleNamespace(prefix=p, port=p.split(".")[0], mechanism=SimpleNamespace(name=p.split(".")[1]))
+        SimpleNamespace(prefix=p, port=p.split(".")[0], mechanism=SimpleNamespace(name=p.split(".")[1], free=False))
         for p in prefixes
     ]
     return SimpleNamespace(effects=effects, prefixes=prefixes)
@@ -41,3 +43,19 @@ def test_it_is_said_where_windows_bear_an_effect_out_and_all_free_runs_are_lost(
     )
     assert len(told) == said
     assert not said or told[0].startswith("Coulomb friction at joint removes 99.9 % of the held-out squared error")
+
+
+@pytest.mark.parametrize(("fit", "after", "said"), [(-22.0, 0.4, True), (60.0, 0.4, False), (-22.0, 1.0, False)])
+def test_it_is_said_of_a_curve_of_which_no_names_lasted(monkeypatch, fit: float, after: float, said: bool) -> None:
+    """A multicopter whose battery sags, beside one that free runs follow, and a curve that windows do not bear out."""
+    curve: Any = SimpleNamespace(port="actuator", mechanism=SimpleNamespace(name="unknown_fading", free=True))
+    best = SimpleNamespace(candidate=SimpleNamespace(attachment=curve), fitted=after)
+    monkeypatch.setattr(beyond, "first_with_curves", lambda study, state: SimpleNamespace(parent=1.0))
+    monkeypatch.setattr(beyond, "curves_of", lambda study, step: [best])
+    energies = np.linspace(0.5, 1.5, 20)
+    others: Any = SimpleNamespace(fits=lambda by: (SimpleNamespace(energies=by * energies),))
+    study: Any = SimpleNamespace(settings=DiagnosisSettings())
+    told = said_of_the_curve(study, states(), others, judged(fit))
+    assert len(told) == said
+    assert not said or told[0].startswith("An unknown effect at actuator removes 60 % of the held-out squared error")
+    assert said_of_the_curve(study, states(), None, judged(fit)) == ()
