@@ -166,6 +166,11 @@ def test_a_search_that_was_stopped_does_not_say_nothing() -> None:
     assert "no answer yet" in verdict(complete=False).sentence
 
 
+def test_the_sentence_of_a_search_that_was_stopped_says_so() -> None:
+    """Seen from Python: "an unknown effect at air (probability 0.50)", where the whole search says 0.97, and no sign of a time limit."""
+    assert verdict(BACKLASH, complete=False).sentence.endswith("to 89.0 %; so far, as the search was stopped.")
+
+
 def test_experiments_that_no_free_run_follows_are_named_and_do_not_count() -> None:
     with_run_3 = {
         stage: (*rows, Score("Run 3", "validation", "speed", 10.0 if stage == "augmented" else 60.0, 0.3))

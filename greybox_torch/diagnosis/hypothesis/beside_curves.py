@@ -1,6 +1,6 @@
 """The uncertainty of a hypothesis with free curves, their weights among the unknowns.
 
-Whole records are fitted with these weights as the windows have them. Deviations that take them for known are those of a machine whose law is
+Whole records are fitted with these weights as the windows have them. Deviations that take them for known are those of a law that is
 known. Seen: a conductance of 89.915 ± 0.019 W/K (90.0) beside a curve; ± 0.15 with its weights unknown.
 """
 

@@ -24,13 +24,21 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, colour, words) -> None:
     """Seen: "its error is 105 times the noise, and it is white": the one on a validation experiment, the other on the estimation ones."""
     judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
-    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    found = [stub(final=stub(past=stub(beyond=past, judged=True), colour=stub(beyond=colour)))]
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
         "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise that the recordings' "
         "highest frequencies show. "
         f"On the experiments that it was estimated from, {words}"
+    )
+
+
+def test_past_inputs_are_not_acquitted_where_they_cannot_be_judged(stub) -> None:
+    judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
+    found = [stub(final=stub(past=stub(beyond=False, judged=False), colour=stub(beyond=True)))]
+    assert "white, and whether past inputs explain it linearly cannot be judged: look" in (
+        what_is_left(judged, found, True, 1.3).sentence
     )
 
 
@@ -68,7 +76,7 @@ def test_much_that_remains_and_is_noise_is_told_as_such(stub) -> None:
 @pytest.mark.parametrize(("past", "colour", "told"), [(False, True, True), (True, True, True), (False, False, False)])
 def test_what_would_take_up_much_of_it_is_told_instead_of_a_load(stub, past: bool, colour: bool, told: bool) -> None:
     """Seen: an inverter's lag in the evidence alone, 51 % and 16.5 standard errors, and the advice to look for a load."""
-    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    found = [stub(final=stub(past=stub(beyond=past, judged=True), colour=stub(beyond=colour)))]
     judged = stub(left=lambda effects: (0.002, 6.0, "Run 2"))
     sentence = what_is_left(judged, found, True, 1.3, further="input lag at motor would take up 51 % of it").sentence
     assert sentence.endswith("part of it is repeatable: input lag at motor would take up 51 % of it.") is told
