@@ -100,7 +100,7 @@ def test_where_noise_is_not_known(stub) -> None:
 )
 def test_hardly_more_than_noise_is_not_told_as_something_repeatable(stub, times: float, coloured: bool, words) -> None:
     """Seen: "nothing is missing (0.95)", and "correlated with past inputs, so that part of it is repeatable" at 0.65 times the noise."""
-    kind = stub(final=stub(past=stub(beyond=coloured), colour=stub(beyond=coloured)))
+    kind = stub(final=stub(past=stub(beyond=coloured, judged=True), colour=stub(beyond=coloured)))
     left = what_is_left(stub(left=lambda effects: (1.0, times, "Validation 1")), [kind], False, 1.3)
     assert left.sentence.endswith(f"the error is {words}")
 
@@ -116,7 +116,7 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
         with_effects=None,
         settings=stub(least_parted=0.1),
     )
-    found = [stub(final=stub(past=stub(beyond=False), colour=stub(beyond=True)))]
+    found = [stub(final=stub(past=stub(beyond=False, judged=True), colour=stub(beyond=True)))]
     sentence = what_is_left(judged, found, True, 1.3, over_windows=over_windows).sentence
     assert ("no free run follows it" in sentence) is told
     assert ("not recorded, such as a load" in sentence) is not told
