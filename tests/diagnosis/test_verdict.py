@@ -200,7 +200,7 @@ def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
     assert "No law" not in short and short.endswith("What it is cannot be told: the recording is too short to judge.")
     told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
     assert (
-        f"Something is missing from Motor: {words} at least 12 times the noise that the recordings' highest frequencies show, over short "
+        f"Something is missing from Motor: {words} at least 12 times the noise (read from the recordings' highest frequencies), over short "
         "windows and in free runs alike." in told
     )
 

@@ -63,7 +63,7 @@ def what_is_left(
     size = (
         f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
         if np.isfinite(times)
-        else "how much of its error is noise does not show"
+        else "how much of its error is noise is not known"
     )
     if parts:
         size += (

@@ -28,8 +28,8 @@ def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, c
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise that the recordings' "
-        "highest frequencies show. "
+        "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise (read from the "
+        "recordings' highest frequencies). "
         f"On the experiments that it was estimated from, {words}"
     )
 
@@ -46,7 +46,7 @@ def test_an_error_of_the_size_of_the_noise(stub) -> None:
     """Seen: "is 1 times the noise"."""
     left = what_is_left(stub(left=lambda effects: (0.01, 1.02, "Run 2")), [], True, 1.3)
     assert (
-        "in Run 2 the free run's error is as large as the noise that the recordings' highest frequencies show."
+        "in Run 2 the free run's error is as large as the noise (read from the recordings' highest frequencies)."
         in left.sentence
     )
 
@@ -86,7 +86,7 @@ def test_what_would_take_up_much_of_it_is_told_instead_of_a_load(stub, past: boo
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(
-        "The model as it stands is recommended: how much of its error is noise does not show."
+        "The model as it stands is recommended: how much of its error is noise is not known."
     )
 
 
