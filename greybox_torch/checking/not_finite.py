@@ -98,8 +98,8 @@ def not_finite_at_start(
     values: Mapping[str, float] | None = None,
     begun: Mapping[str, tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> Iterator[Finding]:
-    """A finding where the equations give no number where a simulation begins, once; an error where a parameter of zero makes them so, which
-    stays zero.
+    """A finding where the equations give no number where a simulation begins, once; an error where a parameter that is zero with recordings
+    makes them so (without, a card may give it a value).
 
     Args:
         values: of parameters, where a card has others than the model declares.
@@ -129,7 +129,7 @@ def not_finite_at_start(
         values_told = "a value" if len(named) == 1 else "values"
         found = replace(
             found,
-            level="error",
+            level="warning" if begun is None else "error",
             write=f"{values_told} of {listed(named)} other than zero, and a bound that excludes it",
         )
     yield found
