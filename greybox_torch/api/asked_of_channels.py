@@ -17,8 +17,8 @@ from greybox_torch.simulation.simulator import Simulator
 POOR = 80.0
 """Mean fit in % below which it is asked."""
 
-FAR_BETTER_SO = "One of these changes makes it far better: the question is asked with the results"
-NOTHING_CHANGED = "None of these changes makes it far better. That does not rule them out: what the model lacks may hide a sign or a scale"
+FAR_BETTER_SO = "With one of these changes the fit is far better: the results ask about it"
+NOTHING_CHANGED = "With none of these changes is the fit far better. A sign or scale may still be wrong: what the model lacks may hide it"
 """What came of it, in the log."""
 
 

@@ -11,6 +11,7 @@ from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.late_sensors import late_sensors
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.percentages import percentages
 from greybox_torch.checking.shared_columns import shared_columns
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.short_records import short_records
@@ -56,6 +57,7 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *stuck_sensors(data, model),
         *(clipped_outputs(data, model) if model is not None else ()),
         *wrapped_channels(data),
+        *percentages(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),
         *(short_records(data, model) if model is not None else ()),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -14,12 +14,14 @@ from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
 
 MOST_ALIKE = 28
-"""Exchanges among inputs or among outputs that are simulated, and channels of other sign: the pairs of eight. More are not asked for."""
+"""Exchanges among inputs, among outputs, or of one with the other that are simulated, and channels of other sign: the pairs of eight. More
+are not asked for.
+"""
 
 
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
-    """A question to the user, where exchanging two inputs or two outputs of one unit, or reversing the sign of one channel, makes a short
-    refit far better on the validation experiments than these are as they stand; else None.
+    """A question to the user, where exchanging two channels of one unit, or reversing the sign of one, makes a short refit far better on
+    the validation experiments than these are as they stand; else None.
 
     None as well where a channel's first sample lies behind what a short refit takes, so that there is nothing to refit.
 
@@ -72,11 +74,9 @@ def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:
     """Exchanges first: of two that fit alike, they are the likelier slip."""
-    sides = (model.inputs, model.outputs)
-    for signals in sides:
-        pairs = [
-            (one.name, other.name) for one, other in combinations(signals, 2) if one.unit and one.unit == other.unit
-        ]
+    inputs, outputs = model.inputs, model.outputs
+    for signals in (combinations(inputs, 2), combinations(outputs, 2), product(inputs, outputs)):
+        pairs = [(one.name, other.name) for one, other in signals if one.unit and one.unit == other.unit]
         for one, other in pairs if len(pairs) <= MOST_ALIKE else ():
             yield Change({one: other, other: one}, f"are the columns of {listed([one, other])} exchanged")
     yield from sign_turns(model)

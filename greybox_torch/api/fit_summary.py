@@ -44,7 +44,7 @@ def statistics(found: Estimation) -> dict[str, str]:
     fpe = f"{found.fpe:.6g}{unit}" if found.fpe < float("inf") else "undetermined: no more samples than unknowns"
     return {
         "termination": found.termination.value,
-        "iterations": f"{found.iterations} (of the descent that ended here; not of windows, of a search, or of descents that were left)",
+        "iterations": f"{found.iterations} (of the last descent)",
         "evaluations": str(found.evaluations),
         "mean squared error": f"{found.mse:.6g}{unit}",
         "final prediction error": fpe,
@@ -122,8 +122,8 @@ def beginnings(found: Estimation) -> list[str]:
         return []
     names = brief(found.problem.records.names)
     return [
-        f"Refit of {names}: begun with the start states above, which the whole experiment gives. All else is begun with start states "
-        "estimated on the first tenth; so is everything in `greybox compare`, whose fits may therefore differ."
+        f"Refit of {names}: begun with the start states above, estimated on the whole experiment. All else, as in `greybox compare`: "
+        "begun with start states estimated on the first tenth."
     ]
 
 

@@ -7,8 +7,11 @@ from collections.abc import Sequence
 from greybox_torch.api.expected import NOTHING, WANTED, decided
 from greybox_torch.api.hypotheses import Hypotheses, Kept, left_out_told, to_tell_apart
 from greybox_torch.api.inseparable import inseparable, told_one_effect
+from greybox_torch.diagnosis.describe.signal_names import signal_name
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION
 from greybox_torch.errors import NothingToDo
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.name_lists import listed
 
 _NOTHING = "nothing to design"
 _OR_A_PARAMETER = "or a parameter whose standard deviation is to shrink: --precision PARAMETER (in Python: precision=)"
@@ -25,7 +28,7 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
     if len(group) < 2:
         raise NothingToDo(
             f"{_NOTHING}: the diagnosis left no rivals to tell apart{_all_the_same(held)}; expected a finding with named alternatives, "
-            f"{_OR_A_PARAMETER}{told}"
+            f"{_OR_A_PARAMETER}{told}{_better_known(held)}"
         )
     if decided([kept.probability for kept in group]):
         best = max(group, key=lambda kept: kept.probability)
@@ -39,6 +42,28 @@ def group_in_question(held: Hypotheses) -> Sequence[Kept]:
             f"{_OR_A_PARAMETER}{told}"
         )
     return group
+
+
+def _better_known(held: Hypotheses) -> str:
+    """Sentences, without the last full stop, on how the curves of unknown effects become better known; "" where there are none."""
+    model = held.recommended.model
+    if not isinstance(model, AugmentedModel):
+        return ""
+    told = ""
+    for one in model.attachments:
+        site = next(port for port in model.base.all_ports if port.name == one.port)
+        names = [signal_name(model.base, site, signal) for signal in one.mechanism.signals()]
+        if one.mechanism.free and names:
+            go, of_each = (
+                ("goes over its whole range", "")
+                if len(names) == 1
+                else ("go over their whole ranges", "of each other and ")
+            )
+            told += (
+                f". The unknown effect at {one.port} is known better, and told from one over another signal, by recordings in which "
+                f"{listed(names)} {go}, independently {of_each}of all other signals"
+            )
+    return told
 
 
 def _all_the_same(held: Hypotheses) -> str:

@@ -34,8 +34,8 @@ def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
         return None
     return (
         f"Ran away: {listed(far)}. These recordings hold no value there, or it makes up for something that the model lacks: look whether a "
-        "column has the unit and scale that the card says, give bounds on the card (upper = …), or fix what is known ({ value = …, fixed "
-        "= true } in [model.parameters] or [model.initial])"
+        "column has the unit and scale that the card says, and terms of the equations the right sign, give bounds on the card (upper = …), "
+        "or fix what is known ({ value = …, fixed = true } in [model.parameters] or [model.initial])"
     )
 
 

@@ -43,10 +43,15 @@ def _outputs_told(who: str, scores: Scores, name: str) -> list[str]:
     return found
 
 
+NOT_JUDGED = "Whether a law does what the network does is not known: most free runs on the held-out stretches ran away."
+
+
 def explained_sentence(explained: Explanation, scores: Scores, *, judged: bool = True) -> str:
     """What the network stands for, without the advice to keep it where :func:`train_advice` is against that, or where the held-out
-    stretches have not ``judged`` it, as most free runs there ran away.
+    stretches have not ``judged`` it, as most free runs there ran away: nor do these tell then which law is closest.
     """
+    if not judged and explained.terms and explained.term is None:
+        return NOT_JUDGED
     said = explained.sentence
     return said.removesuffix(KEEP).rstrip() if not judged or _is_worse(_fits(scores), HYBRID) else said
 

@@ -100,10 +100,10 @@ def _print_choices(console: Console, found: Trained) -> None:
         ["free run on the held-out stretches", f"mean squared error\n{unit.strip()}".strip(), ""],
         choice_rows(found),
     )
-    if told := penalty_at_an_end(found):
-        console.print(Text(told), soft_wrap=True)
     if mostly_lost(found):
         console.print(Text(MOST_LOST, style="yellow"), soft_wrap=True)
+    elif told := penalty_at_an_end(found):
+        console.print(Text(told), soft_wrap=True)
 
 
 def penalty_at_an_end(found: Trained) -> str:
@@ -112,7 +112,7 @@ def penalty_at_an_end(found: Trained) -> str:
     if not (end := polished.at_an_end):
         return ""
     if end == "largest":
-        larger = f"penalty={10.0 * found.settings.penalty:g}"
-        return f"The chosen penalty is the largest that was tried: a larger one may predict as well (`gt.TrainingSettings({larger})`)."
-    lower = f"penalty={0.1 * found.settings.penalty:g}"
-    return f"The chosen penalty is the least that was tried: a lower one may predict better (`gt.TrainingSettings({lower})` begins there)."
+        larger = f"from Python, `gt.TrainingSettings(penalty={10.0 * found.settings.penalty:g})`"
+        return f"The chosen penalty is the largest that was tried: a larger one may predict as well ({larger})."
+    lower = f"from Python, `gt.TrainingSettings(penalty={0.1 * found.settings.penalty:g})` begins there"
+    return f"The chosen penalty is the least that was tried: a lower one may predict better ({lower})."

@@ -13,6 +13,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.equation_lines import in_lines
 from greybox_torch.diagnosis.one_of import OneOf, spoken_at, with_shares
+from greybox_torch.diagnosis.own_parameters import far_refits
 from greybox_torch.diagnosis.verdict import STOPPED, Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report.tables import print_table
@@ -116,6 +117,7 @@ def notes(verdict: Verdict) -> list[str]:
         *small,
         *verdict.at_bounds,
         *verdict.together,
+        *far_refits(verdict.parameters),
         *stopped,
     ]
 

@@ -10,6 +10,7 @@ from greybox_torch.checking.declarations import declared_twice, missing_methods,
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
+from greybox_torch.checking.heat_flows import heat_against_the_fall
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
@@ -106,5 +107,6 @@ def _run(
         found.append(never_finite(model, points, starts(model) if starts else [start_of(model, {})], source))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
+    found += heat_against_the_fall(model, points, source)
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

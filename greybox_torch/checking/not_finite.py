@@ -20,6 +20,7 @@ from greybox_torch.checking.points import Points, start_of
 from greybox_torch.checking.source import Source
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.sensed_states import sensed_states
+from greybox_torch.name_lists import listed
 
 _WRITE = (
     "torch.sqrt(a.clamp(min=1e-9)), torch.log(a.clamp(min=…)), a denominator that stays away from zero, "
@@ -97,7 +98,8 @@ def not_finite_at_start(
     values: Mapping[str, float] | None = None,
     begun: Mapping[str, tuple[np.ndarray, np.ndarray]] | None = None,
 ) -> Iterator[Finding]:
-    """A finding where the equations give no number where a simulation begins, once.
+    """A finding where the equations give no number where a simulation begins, once; an error where a parameter that is zero with recordings
+    makes them so (without, a card may give it a value).
 
     Args:
         values: of parameters, where a card has others than the model declares.
@@ -116,12 +118,21 @@ def not_finite_at_start(
     if not standing:  # the line divides by what other lines made of them
         standing = [name for name, other in zero.items() if not _origin(model, other, source.file)[0]]
     of = f' of "{name}"' if name else " (states at their start values, measured ones and inputs at zero)"
-    yield _finding(
+    named = divisors or standing
+    found = _finding(
         f"the equations give no number at the start{of}"
-        + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
+        + (f", where {' and '.join(f'{name} = 0' for name in named)}" if named else ""),
         source,
         line,
     )
+    if named and set(named) <= {p.name for p in model.declared_parameters}:
+        values_told = "a value" if len(named) == 1 else "values"
+        found = replace(
+            found,
+            level="warning" if begun is None else "error",
+            write=f"{values_told} of {listed(named)} other than zero, and a bound that excludes it",
+        )
+    yield found
 
 
 def _zero(model: GreyBoxModel, start: Points) -> dict[str, Points]:

@@ -14,7 +14,16 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PlainValidator, ValidationError, field_validator, model_validator
 
-from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, Finite, Text, TimeEntry, printable
+from greybox_torch.data.card_channels import (
+    ChannelEntry,
+    Entry,
+    ExperimentEntry,
+    Finite,
+    Name,
+    Text,
+    TimeEntry,
+    printable,
+)
 from greybox_torch.data.card_constants import check_constants
 from greybox_torch.data.card_controller import LoopEntry, check_loops
 from greybox_torch.data.card_errors import describe
@@ -90,7 +99,7 @@ class Card(Entry):
     For `greybox fleet`, `machine` says which machine was recorded (several cards may be of one) and `recorded` when.
     """
 
-    name: Text | None = None
+    name: Name | None = None
     sample_time: Finite | None = None
     time: TimeEntry | None = None
     resample: Finite | None = None
@@ -103,7 +112,7 @@ class Card(Entry):
     limits: dict[str, Any] = {}
     controller: dict[str, LoopEntry] = {}
     beliefs: dict[str, Any] = {}
-    machine: Text | None = None
+    machine: Name | None = None
     recorded: Annotated[date | None, PlainValidator(_a_date)] = None
 
     @field_validator("time", mode="before")

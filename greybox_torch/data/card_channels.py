@@ -19,7 +19,15 @@ def printable(text: str) -> str:
     return text
 
 
+def visible(text: str) -> str:
+    """Raises ValueError where a name has nothing but spaces, which no heading or legend could show."""
+    if not text.strip():
+        raise ValueError(f"found {text!a}, expected a name that can be seen")
+    return text
+
+
 Text = Annotated[str, Field(min_length=1), AfterValidator(printable)]
+Name = Annotated[Text, AfterValidator(visible)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -152,7 +160,7 @@ class ExperimentEntry(Entry):
     have one it is not read.
     """
 
-    name: Text
+    name: Name
     file: Annotated[list[Text], Field(min_length=1, max_length=1000)]
     join: Literal["concatenate", "time", "rows"] | None = None
     role: Literal["estimation", "validation"] = "estimation"

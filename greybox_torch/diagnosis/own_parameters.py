@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from greybox_torch.estimate.brief_lists import brief_pairs
+from greybox_torch.in_unit import in_unit
+
+FAR_TIMES = 10.0
+"""Times its start value from which an estimate is far from it."""
 
 
 @dataclass(frozen=True)
@@ -46,3 +51,26 @@ def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
         f"Determined only together (correlation of the estimates): {brief_pairs(pairs)}. What one has too much the other has too little: "
         "fix the one that is known.",
     )
+
+
+def far_refits(estimates: Sequence[Estimate]) -> tuple[str, ...]:
+    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere."""
+    far = [
+        f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} (begun with {one.start:.4g})"
+        for one in estimates
+        if one.augmented is not None
+        and _times(one.augmented[0], one.start) < FAR_TIMES < _times(one.refit[0], one.start)
+    ]
+    if not far:
+        return ()
+    return (
+        f"Re-estimated without the effects: {', '.join(far)}. The error of a model that lacks something may have several minima: "
+        "`greybox fit` may end in another one, and standard deviations hold around this one alone.",
+    )
+
+
+def _times(value: float, other: float) -> float:
+    """By which factor the larger of two values exceeds the other; infinite where they differ in sign, or one of them is zero."""
+    if value == other:
+        return 1.0
+    return max(value / other, other / value) if value * other > 0.0 else math.inf

@@ -153,7 +153,8 @@ class Verdict:
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
-        return f"{start} {found}{self._gain()}."
+        so_far = "" if self.complete else "; so far, as the search was stopped"
+        return f"{start} {found}{self._gain()}{so_far}."
 
     @property
     def about_sizes(self) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from greybox_torch.diagnosis.digits import digits
 
-NOISE_SHOWN = "that the recordings' highest frequencies show"
+NOISE_SHOWN = "(read from the recordings' highest frequencies)"
 """What is meant by the noise: not all that disturbs, but the sensors' own, which is little where an encoder has fine steps."""
 
 

@@ -92,11 +92,14 @@ def _countable(values: np.ndarray) -> np.ndarray:
 def suggestions(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
-    Tried on the free parameters, or on all where none is free; empty where no single one helps.
+    Tried on the free parameters, or on all where none is free; empty where no single one helps. One that is zero stays so with any factor:
+    in its place the model's own value is tried at last, or one.
     """
     tried = np.flatnonzero(problem.free) if problem.free.any() else np.arange(len(problem.names))
-    for factor in FACTORS:
-        candidates = [(int(k), factor * float(problem.values[k])) for k in tried if problem.values[k] != 0.0]
+    zero, declared = problem.values == 0.0, [p.value for p in problem.model.declared_parameters]
+    scaled = [[(int(k), factor * float(problem.values[k])) for k in tried if not zero[k]] for factor in FACTORS]
+    own = [(int(k), declared[k] if np.isfinite(declared[k]) and declared[k] else 1.0) for k in np.flatnonzero(zero)]
+    for candidates in (*scaled, own):
         rows = [_changed(problem, k, value) for k, value in candidates]
         allowed = [i for i, row in enumerate(rows) if _allowed(problem, row)]
         finite = _finite(problem, simulator, np.array([rows[i] for i in allowed])) if allowed else []

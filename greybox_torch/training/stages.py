@@ -71,12 +71,19 @@ def window_lengths(records: Records, settings: TrainingSettings) -> list[int]:
 
 
 def held_out_samples(records: Records, longest: int, settings: TrainingSettings) -> np.ndarray:
-    """Which samples (N,) of the records no step is taken on: stretches of ``longest`` samples, drawn with the seed."""
+    """Which samples (N,) of the records no step is taken on: stretches of ``longest`` samples, drawn with the seed.
+
+    None begins an experiment: what is measured behind it hardly determines the start states, and a free run from any others says nothing of
+    the model. Seen: a building zone of rms 1.5 °C, of which the physics alone "ran away" by 280 °C.
+    """
     windows = cut(records, longest)
-    count = len(windows.start)
-    chosen = np.random.default_rng([settings.seed, 1]).choice(
-        count, min(max(1, round(settings.held_out * count)), count - 1), replace=False
-    )
+    count, begins = len(windows.start), np.isin(windows.start, records.first)
+    draw = np.random.default_rng([settings.seed, 1])
+    chosen = draw.choice(count, min(max(1, round(settings.held_out * count)), count - 1), replace=False)
+    kept = chosen[~begins[chosen]]
+    others = np.setdiff1d(np.flatnonzero(~begins), kept)
+    further = draw.choice(others, min(len(chosen) - len(kept), len(others)), replace=False)
+    chosen = np.concatenate([kept, further])
     mask = np.zeros(records.y.shape[1], dtype=bool)
     for k in chosen:
         mask[windows.start[k] : windows.last[k] + 1] = True

@@ -79,6 +79,38 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     assert f"{found.question}." in found._advice
 
 
+class Surrounded(gt.GreyBoxModel):
+    """A zone in surroundings of recorded temperature, with a heater."""
+
+    states = (gt.State("air", "degC", initial="measured"),)
+    inputs = (gt.Input("P1", "W"), gt.Input("outside", "degC"))
+    outputs = (gt.Output("air", "degC"),)
+    parameters = (gt.Parameter("C", 300.0, unit="J/K", lower=1.0), gt.Parameter("G", 1.0, unit="W/K", lower=0.0))
+
+    def derivative(self, x, u, p, port):
+        return {"air": (u.P1 - p.G * (x.air - u.outside)) / p.C}
+
+    def output(self, x, u, p):
+        return {"air": x.air}
+
+
+def test_an_input_exchanged_with_an_output_is_asked_for() -> None:
+    """Seen: the columns of a zone's and the outside temperature exchanged: a heat capacity of 3e94 J/K, and not a word."""
+    runs = []
+    for k, role in enumerate(("estimation", "validation")):
+        draw = np.random.default_rng(k)
+        u = np.repeat(draw.uniform(0.0, 60.0, size=COUNT // 20), 20)
+        outside = 10.0 + 5.0 * np.sin(np.arange(COUNT) / 25.0 + k)
+        air = np.full(COUNT, 20.0)
+        for i in range(COUNT - 1):
+            air[i + 1] = air[i] + STEP * (u[i] - 0.8 * (air[i] - outside[i])) / 400.0
+        measured = air + 0.05 * draw.standard_normal(COUNT)
+        given = {"P1": u, "outside": measured, "air": outside}
+        runs.append(gt.Recording.from_arrays(role, given, sample_time=STEP, role=role))
+    question = gt.fit(Surrounded(), gt.DataSet(runs)).question
+    assert question is not None and question.startswith("Are the columns of outside and air exchanged? So changed")
+
+
 class InMillikelvin(Plate):
     """The second thermocouple in millikelvin."""
 

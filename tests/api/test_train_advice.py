@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -9,7 +11,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.scores import Scores
-from greybox_torch.api.train_advice import explained_sentence, train_advice
+from greybox_torch.api.train_advice import NOT_JUDGED, explained_sentence, train_advice
 from greybox_torch.api.train_range import Beyond, _beyond
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.training import Explanation
@@ -61,6 +63,11 @@ def test_there_is_one_recommendation() -> None:
     assert explained_sentence(kept, scores(physics=59.7, hybrid=80.0)) == kept.sentence
     not_judged = explained_sentence(kept, scores(physics=59.7, hybrid=80.0), judged=False)
     assert not_judged.endswith("stands for it."), "seen: Keep the network, of which nearly all held-out runs ran away"
+    law: Any = SimpleNamespace(absent="", lost=9.68e3, attachment=SimpleNamespace(prefix="air.constant_bias"))
+    ranked = replace(kept, memories=(), curves=(SimpleNamespace(),), terms=(law,))  # pyright: ignore[reportArgumentType]
+    assert "with the closest, air.constant_bias" in explained_sentence(ranked, scores(physics=59.7, hybrid=80.0))
+    said_of_none = explained_sentence(ranked, scores(physics=59.7, hybrid=80.0), judged=False)
+    assert said_of_none == NOT_JUDGED, "seen: the closest of laws whose runs ran away, 9.68e+03 times the network's"
     (told,) = said(physics=59.7, hybrid=42.3, named=90.0)
     assert told.endswith("Use the model with the law in the network's place (`named`).")
 

@@ -43,6 +43,16 @@ def test_the_start_is_the_one_of_the_recordings(data_set) -> None:
     ]
 
 
+def test_a_parameter_of_zero_that_divides_is_an_error(data_set) -> None:
+    """Seen: a heat capacity of 0 on the card: "can be used: 2 warnings", with torch.sqrt as advice."""
+    model = Gap()
+    model.set_values({"m": 0.0})
+    data = data_set({"force": "N", "gap": "m"}, [{"force": [1.0] * 20, "gap": [0.01] * 20}])
+    found = next(f for f in gt.check(model, data).findings if "at the start" in f.found)
+    assert found.level == "error" and found.found.endswith(", where m = 0") and "sqrt" not in found.write
+    assert found.write == "a value of m other than zero, and a bound that excludes it"
+
+
 def test_no_number_anywhere_is_one_error() -> None:
     """Seen: "can be used: 5 warnings", three of them that parameters move nothing."""
 

@@ -167,7 +167,7 @@ def test_substeps_are_told(motor_folder: Make, edit: Edit) -> None:
 
 def test_iterations_say_what_they_count(motor_folder: Make) -> None:
     """Seen: "iterations: 20" under a log of many series of more."""
-    assert "(of the descent that ended here; not of windows, of a search" in fit(motor_folder()).stdout
+    assert "(of the last descent)" in fit(motor_folder()).stdout
 
 
 def test_at_the_iteration_limit_it_says_how_to_go_on() -> None:

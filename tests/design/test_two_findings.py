@@ -14,6 +14,7 @@ from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.expected import Expected, decided
 from greybox_torch.api.hypotheses import _left, hypotheses_of, hypothesis_files, left_out_told, to_tell_apart
+from greybox_torch.api.nothing_open import _better_known
 from greybox_torch.diagnosis.describe.rivals import Rival
 from greybox_torch.diagnosis.verdict import Left
 from greybox_torch.errors import NothingToDo, UserError
@@ -22,6 +23,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag
+from greybox_torch.mechanisms.unknown import Unknown
 from tests.diagnosis.test_verdict import BACKLASH
 
 FIRST, SECOND = "rotor.coulomb_friction", "rotor.quadratic_drag"
@@ -90,6 +92,19 @@ def test_what_is_decided_is_not_recorded(two_found, tmp_path, in_verdict: float,
     kept = json.loads(files[tmp_path / "hypotheses.json"])
     assert [one["in_verdict"] for one in kept["findings"][0]] == [in_verdict, None] and kept["complete"] is complete
     assert [one.get("limited") for one in kept["findings"][0]] == [list(why), None]
+
+
+def test_how_a_curve_becomes_better_known_is_told(two_found) -> None:
+    """Seen: "nothing to design" of a curve that another recording would have told from one over another signal, and no word of how."""
+    held = hypotheses_of(two_found)
+    assert _better_known(held) == "", "laws, no curve"
+    law, model = Attachment("rotor", Unknown("speed", 8)), two_found.model
+    curve = AugmentedModel(model.plain, [law], model.surroundings)
+    told = _better_known(replace(held, recommended=replace(held.recommended, model=curve)))
+    assert (
+        told.startswith(". The unknown effect at rotor is known better")
+        and "in which speed goes over its whole" in told
+    )
 
 
 def test_what_is_left_all_the_same_is_told(two_found, tmp_path) -> None:

@@ -166,6 +166,11 @@ def test_a_search_that_was_stopped_does_not_say_nothing() -> None:
     assert "no answer yet" in verdict(complete=False).sentence
 
 
+def test_the_sentence_of_a_search_that_was_stopped_says_so() -> None:
+    """Seen from Python: "an unknown effect at air (probability 0.50)", where the whole search says 0.97, and no sign of a time limit."""
+    assert verdict(BACKLASH, complete=False).sentence.endswith("to 89.0 %; so far, as the search was stopped.")
+
+
 def test_experiments_that_no_free_run_follows_are_named_and_do_not_count() -> None:
     with_run_3 = {
         stage: (*rows, Score("Run 3", "validation", "speed", 10.0 if stage == "augmented" else 60.0, 0.3))
@@ -195,7 +200,7 @@ def test_where_the_error_without_a_name_is(second: float, words: str) -> None:
     assert "No law" not in short and short.endswith("What it is cannot be told: the recording is too short to judge.")
     told = replace(verdict(), unexplained=12.0, scores={"start": both, "refit": both, "augmented": both}).sentence
     assert (
-        f"Something is missing from Motor: {words} at least 12 times the noise that the recordings' highest frequencies show, over short "
+        f"Something is missing from Motor: {words} at least 12 times the noise (read from the recordings' highest frequencies), over short "
         "windows and in free runs alike." in told
     )
 

@@ -37,6 +37,6 @@ def test_an_error_above_the_noise_is_told_beside_nothing_missing() -> None:
     found = replace(verdict(), disturbed=4.76)
     assert not found.mismatch and found.sentence == (
         "Nothing is missing from Motor that these recordings can show (confidence 0.95), but on the worst experiment its error is 4.76 "
-        "times the noise that the recordings' highest frequencies show: it follows neither the inputs nor any law that was tried, and "
+        "times the noise (read from the recordings' highest frequencies): it follows neither the inputs nor any law that was tried, and "
         "whether a disturbance leaves it or something that the model lacks is not known."
     )

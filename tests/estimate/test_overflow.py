@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -31,6 +32,13 @@ class Growth(GreyBoxModel):
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
         return {"speed": x.speed}
+
+
+class Divided(Growth):
+    """b dx/dt = -a x."""
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"speed": -p.a * x.speed / p.b}
 
 
 @pytest.fixture
@@ -69,9 +77,14 @@ def test_none_avoids_it(problem: Problem) -> None:
     assert "check units, scales and signs" in avoidance(())
 
 
-def make_narrow(problem: Problem) -> Problem:
-    from dataclasses import replace
+def test_a_parameter_of_zero_is_tried_with_the_models_own_value(problem: Problem) -> None:
+    """Seen: a heat capacity of 0 on the card: "changing one parameter alone, by up to 1000 times, does not avoid it"."""
+    divided = replace(problem, model=Divided(), values=np.array([0.0, 0.0]))
+    (found,) = suggestions(divided, Simulator.of(divided.model, divided.free_names))
+    assert str(found) == "b = 1 (now 0)"
 
+
+def make_narrow(problem: Problem) -> Problem:
     return replace(problem, lower=np.array([1e6, 0.5]), upper=np.array([1e7, 2.0]))
 
 

@@ -74,6 +74,7 @@ FAULTS = [
     (A, "file = '/dev/zero'", "no reader for files ending in"),
     (A, "file = 'a.xlsx'", 'no reader for files ending in ".xlsx"'),
     (A, 'file = "a\\u0000.csv"', "expected text without control characters"),
+    ('name = "A"', 'name = " "', "expected a name that can be seen"),
     (A, f"file = '{'x' * 300}.csv'", "cannot be read: File name too long"),
     (A, "file = 3", "file: found 3, expected the name of a file, or a list of names"),
     (A, "file = []", "expected the name of a file"),

@@ -74,4 +74,5 @@ def ports_asked(law: type[Mechanism], knots: int = 0) -> list[str]:
 def fitted(law: str, values: Mapping[str, float]) -> Any:
     """What a final fit says of a form at the actuator, as far as its curve asks."""
     own = {f"actuator.{law}.{name}": value for name, value in values.items()}
-    return SimpleNamespace(values=lambda: own, deviations=lambda: {}, uncertainty=None)
+    told = SimpleNamespace(values=lambda: own, deviations=lambda: {}, uncertainty=None)
+    return SimpleNamespace(**vars(told), told=told)

@@ -8,6 +8,7 @@ from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.mismatch import mismatch_share, negligible
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 
 
 def beside_noise(study: Study, fitted: Hypothesis) -> str:
@@ -20,15 +21,15 @@ def beside_noise(study: Study, fitted: Hypothesis) -> str:
 
 def told_beside_noise(times: float, *, more: bool, known: bool) -> str:
     """An error of so many times the noise in words, where that is ``more`` than noise alone, and where the noise is ``known``."""
-    over = f"Over the windows of the length that leaves most, the error is {digits(times)} times"
+    over = (
+        f"Over short windows (of the lengths tried, the one with the largest error), the error is {digits(times)} times"
+    )
     if not more and not known:
         return (
-            f"{over} what the recordings show at their highest frequencies. Part of that is motion, so the noise is less, by how "
-            "much does not show."
+            f"{over} what the recordings show at their highest frequencies. Part of that is motion: the noise is smaller, and how much "
+            "smaller is not known."
         )
-    return (
-        f"{over} the noise that the recordings' highest frequencies show{': more than noise is left' if more else ''}."
-    )
+    return f"{over} the noise {NOISE_SHOWN}{': more than noise is left' if more else ''}."
 
 
 def why_negligible(study: Study, plain: Hypothesis) -> list[str]:

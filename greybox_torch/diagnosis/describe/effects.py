@@ -194,7 +194,7 @@ def ceiling_share(done: SelectionStep, memory: SelectionStep | None = None) -> f
 
 
 def _parameters(model: AugmentedModel, attachment: Attachment, final: Final) -> dict[str, dict[str, Any]]:
-    values, deviations = final.values(), final.deviations()
+    values, deviations = final.values(), final.told.deviations()
     start = f"{attachment.prefix}."
     result: dict[str, dict[str, Any]] = {}
     for one in model.declared_parameters:

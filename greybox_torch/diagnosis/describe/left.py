@@ -41,6 +41,11 @@ def what_is_left(
     parts = over_windows <= noise < times and _parts(judged, effects, worst)
     beyond = any(d.final.past.beyond for d in detected)
     coloured = any(d.final.colour.beyond for d in detected)
+    linearly = (
+        "past inputs do not explain it linearly"
+        if all(d.final.past.judged for d in detected)
+        else "whether past inputs explain it linearly cannot be judged"
+    )
     how = (
         "the error is not white: steps of a sensor, the timing of samples or start states may leave as much"
         if times < noise and (beyond or coloured)
@@ -50,15 +55,15 @@ def what_is_left(
         if further and (beyond or coloured)
         else "the error is correlated with past inputs, so that part of it is repeatable"
         if beyond
-        else "the error is not white, and past inputs do not explain it linearly: look at it over time (greybox residuals) for what is not "
-        "recorded, such as a load, or for a state that it follows"
+        else f"the error is not white, and {linearly}: look at it over time (greybox residuals) for what is not recorded, such as a load, "
+        "or for a state that it follows"
         if coloured
         else "the error is white, as noise is"
     )
     size = (
         f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
         if np.isfinite(times)
-        else "how much of its error is noise does not show"
+        else "how much of its error is noise is not known"
     )
     if parts:
         size += (

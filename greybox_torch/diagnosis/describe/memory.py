@@ -34,8 +34,6 @@ STEP = 1e-4
 def remembered(attachment: Attachment, around: Surroundings, final: Final, signal: str) -> Memory | None:
     """The response of an effect with its band, from the fit to whole records; None for an effect that is no free response.
 
-    The band is that of the remembered part: the gain without memory is as the windows have it.
-
     Args:
         signal: the model's own name of what it is a response to.
     """
@@ -113,6 +111,7 @@ def _own(
 ) -> tuple[dict[str, float], tuple[tuple[str, ...], tuple[np.ndarray, ...]]]:
     """The effect's parameters by their short names; those with a covariance, and the covariances (k, k), plain and sandwich."""
     start = f"{attachment.prefix}."
+    final = final.told
     known = final.deviations()
     at = [k for k, n in enumerate(known) if n.startswith(start) and np.isfinite(known[n])]
     names = tuple(list(known)[k].removeprefix(start) for k in at)

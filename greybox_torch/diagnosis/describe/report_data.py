@@ -103,9 +103,12 @@ def parameters(judged: Judgement, effects: bool) -> tuple[Estimate, ...]:
     problem, finals = judged.problem, (judged.plain, *((judged.augmented,) if effects else ()))
     units = {p.name: p.unit for p in problem.model.declared_parameters}
     values = dict(zip(problem.names, map(float, problem.values), strict=True))
-    estimates, bounded = [(f.values(), f.deviations()) for f in finals], [set(at_bounds(f.problem)) for f in finals]
+    estimates, bounded = (
+        [(f.values(), f.told.deviations()) for f in finals],
+        [set(at_bounds(f.problem)) for f in finals],
+    )
 
-    strong = _strong_pairs(finals[-1])
+    strong = _strong_pairs(finals[-1].told)
 
     def of(name: str) -> Estimate:
         both = [

@@ -22,6 +22,9 @@ from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.residuals import NORMAL_99, Correlation, feedback_correlation, input_correlation, whiteness
 
+MOST_BOUND = 0.7
+"""Bound of a correlation from which one within it says nothing: half of the errors' variance may be hidden below."""
+
 
 @dataclass(frozen=True)
 class Largest:
@@ -42,8 +45,10 @@ class Largest:
 
     @property
     def judged(self) -> bool:
-        """Whether the bound says anything: no correlation exceeds one, however short or slow the recordings."""
-        return self.bound < 1.0
+        """Whether it says anything: no correlation exceeds a bound of one, however short or slow the recordings, and hardly any one that is
+        nearly as large.
+        """
+        return self.bound < (1.0 if self.beyond else MOST_BOUND)
 
     @property
     def ratio(self) -> float:

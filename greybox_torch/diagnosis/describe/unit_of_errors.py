@@ -9,6 +9,6 @@ def unit_of_errors(study: Study) -> str:
     """In brackets, as the end of a sentence with such errors; nothing where the only output has no unit."""
     outputs = study.problem.model.outputs
     if len(outputs) > 1:
-        return " (of each output, in units of what the model as it stands leaves over windows of the shortest length)"
+        return " (each output divided by the error of the model as it stands over the shortest windows)"
     unit = outputs[0].unit
     return f" ({unit})" if unit not in ("", "1") else ""

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
+from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_for_whole_records
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
@@ -27,12 +28,18 @@ from greybox_torch.simulation.side_by_side import side_by_side
 class Final:
     """A hypothesis fitted to whole estimation records: its problem there, and the uncertainty of the unknowns (None where unfitted).
 
-    ``weighed``: with errors weighed by their spectrum.
+    ``weighed``: with errors weighed by their spectrum. ``with_curves``: the same with the weights of free curves among the unknowns.
     """
 
     problem: Problem
     uncertainty: Uncertainty | None
     weighed: bool = False
+    with_curves: Final | None = None
+
+    @property
+    def told(self) -> Final:
+        """The one whose deviations a reader is told, which allow for what is not known of free curves."""
+        return self if self.with_curves is None else self.with_curves
 
     def sentences(self) -> tuple[str, ...]:
         """What the reader of a verdict has to know of it."""
@@ -94,7 +101,8 @@ def finish(
     run, point = weighed_by_what_is_left(run, point, budget.record_iterations)
     point = returned(run, point)
     # What compares hypotheses goes by the weights that all of them share.
-    return Final(replace(run.at(point), weights=hypothesis.problem.weights), uncertainty(run, point))
+    shared = replace(run.at(point), weights=hypothesis.problem.weights)
+    return Final(shared, uncertainty(run, point), with_curves=_with_curves(hypothesis, run.at(point)))
 
 
 def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records | None) -> Final | None:
@@ -110,7 +118,14 @@ def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records 
     if found is None:
         return None
     run, fit = found
-    return Final(run.at(fit.point), of_information(fit.information, by_samples=True), weighed=True)
+    at, known = run.at(fit.point), of_information(fit.information, by_samples=True)
+    return Final(at, known, weighed=True, with_curves=_with_curves(hypothesis, at, weighed=True))
+
+
+def _with_curves(hypothesis: Hypothesis, at: Problem, weighed: bool = False) -> Final | None:
+    """A fit with the weights of free curves among the unknowns; None where there are none."""
+    found = beside_curves(hypothesis, at, weighed=weighed)
+    return None if found is None else Final(*found, weighed=weighed)
 
 
 def from_longest_windows(hypothesis: Hypothesis) -> Final:
@@ -128,7 +143,8 @@ def as_windows_have_it(
     hypothesis = in_steps_for_whole_records(hypothesis, settings)
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
-    return Final(run.at(run.start), _over_windows(hypothesis))
+    at, known = run.at(run.start), _over_windows(hypothesis)
+    return Final(at, known, with_curves=Final(replace(at, free=hypothesis.problem.free), known))
 
 
 def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:

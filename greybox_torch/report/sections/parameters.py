@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
-from greybox_torch.diagnosis.own_parameters import Estimate
+from greybox_torch.diagnosis.own_parameters import Estimate, far_refits
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report import text
 
@@ -23,7 +23,7 @@ class Row:
 @dataclass(frozen=True)
 class Parameters:
     """``columns`` are the models: their names, and a few words on each; ``undetermined``: a standard deviation exceeds its value;
-    ``bounded``: sentences on those at a bound, and on those determined together alone; "" for none.
+    ``bounded``: sentences on those at a bound, those determined together alone, and those re-estimated far off; "" for none.
     """
 
     columns: tuple[tuple[str, str], ...]
@@ -40,7 +40,12 @@ class Parameters:
         if verdict.effects:
             columns = (*columns, ("Augmented", "with the effects"))
         rows, undetermined = tuple(map(_row, verdict.parameters)), any(map(_undetermined, verdict.parameters))
-        return cls(columns, rows, undetermined, " ".join((*verdict.at_bounds, *verdict.together)))
+        return cls(
+            columns,
+            rows,
+            undetermined,
+            " ".join((*verdict.at_bounds, *verdict.together, *far_refits(verdict.parameters))),
+        )
 
 
 def _undetermined(found: Estimate) -> bool:

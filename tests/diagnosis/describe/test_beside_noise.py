@@ -7,12 +7,12 @@ from greybox_torch.diagnosis.describe.beside_noise import told_beside_noise
 
 def test_what_is_noise_and_what_is_motion_is_told_apart() -> None:
     """Seen: "0.21 times the noise that the recordings' high-frequency floor shows, an upper bound, as part of that is motion"."""
-    start = "Over the windows of the length that leaves most, the error is 0.21 times "
+    start = "Over short windows (of the lengths tried, the one with the largest error), the error is 0.21 times "
     assert told_beside_noise(0.21, more=False, known=False) == (
-        f"{start}what the recordings show at their highest frequencies. Part of that is motion, so the noise is less, by how much does not "
-        "show."
+        f"{start}what the recordings show at their highest frequencies. Part of that is motion: the noise is smaller, and how much "
+        "smaller is not known."
     )
-    noise = "the noise that the recordings' highest frequencies show"
+    noise = "the noise (read from the recordings' highest frequencies)"
     assert told_beside_noise(0.21, more=False, known=True) == f"{start}{noise}."
     for known in (True, False):
         assert told_beside_noise(1.7, more=True, known=known).endswith(f"1.7 times {noise}: more than noise is left.")

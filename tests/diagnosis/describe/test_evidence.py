@@ -72,6 +72,15 @@ def test_a_bound_of_one_or_more_judges_nothing() -> None:
     assert "99 % bound 0.05" in past and "with the effects 0.94 (which cannot be judged)" in past
 
 
+@pytest.mark.parametrize(("value", "judged"), [(0.92, False), (0.97, True)])
+def test_a_bound_that_hardly_any_correlation_exceeds_acquits_of_none(value: float, judged: bool) -> None:
+    """Seen: "not correlated with past inputs (largest correlation 0.92, 99 % bound 0.96)", where an input was the whole error."""
+    slow = Remains(Largest(0.01, 0.03), Largest(value, 0.96))
+    (past, _) = detection_sentences([Detection("Zone", "air", slow, slow, CALM, 40.0)], False)
+    assert ("are correlated with past inputs (largest correlation 0.97" in past) is judged
+    assert ("cannot be judged from these recordings" in past) is not judged
+
+
 def test_no_estimation_experiment_that_could_be_followed() -> None:
     assert detection_sentences([], True) == []
 

@@ -24,13 +24,21 @@ from greybox_torch.diagnosis.describe.left import what_is_left
 def test_size_and_kind_of_error_are_each_told_of_their_experiments(stub, past, colour, words) -> None:
     """Seen: "its error is 105 times the noise, and it is white": the one on a validation experiment, the other on the estimation ones."""
     judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
-    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    found = [stub(final=stub(past=stub(beyond=past, judged=True), colour=stub(beyond=colour)))]
     left = what_is_left(judged, found, True, 1.3)
     assert (left.share, left.times_noise) == (0.634, 105.3)
     assert left.sentence == (
-        "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise that the recordings' "
-        "highest frequencies show. "
+        "63 % of the mismatch remains in free runs: in Validation 1 the free run's error is 110 times the noise (read from the "
+        "recordings' highest frequencies). "
         f"On the experiments that it was estimated from, {words}"
+    )
+
+
+def test_past_inputs_are_not_acquitted_where_they_cannot_be_judged(stub) -> None:
+    judged = stub(left=lambda effects: (0.634, 105.3, "Validation 1"))
+    found = [stub(final=stub(past=stub(beyond=False, judged=False), colour=stub(beyond=True)))]
+    assert "white, and whether past inputs explain it linearly cannot be judged: look" in (
+        what_is_left(judged, found, True, 1.3).sentence
     )
 
 
@@ -38,7 +46,7 @@ def test_an_error_of_the_size_of_the_noise(stub) -> None:
     """Seen: "is 1 times the noise"."""
     left = what_is_left(stub(left=lambda effects: (0.01, 1.02, "Run 2")), [], True, 1.3)
     assert (
-        "in Run 2 the free run's error is as large as the noise that the recordings' highest frequencies show."
+        "in Run 2 the free run's error is as large as the noise (read from the recordings' highest frequencies)."
         in left.sentence
     )
 
@@ -68,7 +76,7 @@ def test_much_that_remains_and_is_noise_is_told_as_such(stub) -> None:
 @pytest.mark.parametrize(("past", "colour", "told"), [(False, True, True), (True, True, True), (False, False, False)])
 def test_what_would_take_up_much_of_it_is_told_instead_of_a_load(stub, past: bool, colour: bool, told: bool) -> None:
     """Seen: an inverter's lag in the evidence alone, 51 % and 16.5 standard errors, and the advice to look for a load."""
-    found = [stub(final=stub(past=stub(beyond=past), colour=stub(beyond=colour)))]
+    found = [stub(final=stub(past=stub(beyond=past, judged=True), colour=stub(beyond=colour)))]
     judged = stub(left=lambda effects: (0.002, 6.0, "Run 2"))
     sentence = what_is_left(judged, found, True, 1.3, further="input lag at motor would take up 51 % of it").sentence
     assert sentence.endswith("part of it is repeatable: input lag at motor would take up 51 % of it.") is told
@@ -78,7 +86,7 @@ def test_what_would_take_up_much_of_it_is_told_instead_of_a_load(stub, past: boo
 def test_where_noise_is_not_known(stub) -> None:
     left = what_is_left(stub(left=lambda effects: (1.0, np.nan, "")), [], False, 1.3)
     assert left.sentence.startswith(
-        "The model as it stands is recommended: how much of its error is noise does not show."
+        "The model as it stands is recommended: how much of its error is noise is not known."
     )
 
 
@@ -92,7 +100,7 @@ def test_where_noise_is_not_known(stub) -> None:
 )
 def test_hardly_more_than_noise_is_not_told_as_something_repeatable(stub, times: float, coloured: bool, words) -> None:
     """Seen: "nothing is missing (0.95)", and "correlated with past inputs, so that part of it is repeatable" at 0.65 times the noise."""
-    kind = stub(final=stub(past=stub(beyond=coloured), colour=stub(beyond=coloured)))
+    kind = stub(final=stub(past=stub(beyond=coloured, judged=True), colour=stub(beyond=coloured)))
     left = what_is_left(stub(left=lambda effects: (1.0, times, "Validation 1")), [kind], False, 1.3)
     assert left.sentence.endswith(f"the error is {words}")
 
@@ -108,7 +116,7 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
         with_effects=None,
         settings=stub(least_parted=0.1),
     )
-    found = [stub(final=stub(past=stub(beyond=False), colour=stub(beyond=True)))]
+    found = [stub(final=stub(past=stub(beyond=False, judged=True), colour=stub(beyond=True)))]
     sentence = what_is_left(judged, found, True, 1.3, over_windows=over_windows).sentence
     assert ("no free run follows it" in sentence) is told
     assert ("not recorded, such as a load" in sentence) is not told

@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
+from greybox_torch.mechanisms.unknown import Unknown
 
 SETTINGS, BUDGET = DiagnosisSettings(), SearchBudget()
 
@@ -70,6 +71,23 @@ def test_the_values_of_windows_have_the_deviations_that_they_scatter_by(motor_da
         true = {"J": 0.02, "b": 0.05, "rotor.constant_bias.bias": 0.05}
         scores += [(final.values()[n] - value) / final.deviations()[n] for n, value in true.items()]
     assert 0.5 < float(np.sqrt(np.mean(np.square(scores)))) < 1.6
+
+
+@pytest.mark.parametrize("loud", [False, True], ids=["weighed by their spectrum", "weighed alike"])
+def test_deviations_beside_a_curve_allow_for_its_heights(motor_data, motor, begun, loud: bool) -> None:
+    """Seen: a wall's conductance of 89.915 ± 0.019 W/K beside a curve (true 90.0); with the curve's heights unknown it is ± 0.15."""
+    search = begun(motor_data(torque=lambda q, v: 0.02 * np.cos(0.1 * v), noise=0.02), motor)
+    curve = search.refitted((attach(motor, "rotor", Unknown("speed", 8)),), search.plain)
+    if loud:
+        curve = replace(curve, fits=tuple(replace(f, mean_square=9.0 * f.mean_square) for f in curve.fits))
+    for final in (finish(curve), as_windows_have_it(curve)):
+        held, told = final.deviations(), final.told.deviations()
+        assert final.told.values() == final.values()
+        assert {f"rotor.unknown.w_{k}" for k in range(8)} == told.keys() - {"J", "b"}
+        assert held.keys() == {"J", "b"} and all(np.isfinite(one) for one in told.values())
+    held, told = finish(curve).deviations(), finish(curve).told.deviations()
+    assert told["b"] > 5.0 * held["b"], "what is proportional to the speed, the curve can do as well"
+    assert finish(search.plain).with_curves is None
 
 
 def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, begun) -> None:

@@ -1,0 +1,45 @@
+"""Channels of unit "1" whose values are those of a share in percent: a free gain makes up for the hundred, so that no fit tells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from greybox_torch.data import DataSet
+from greybox_torch.data.data_warning import InASentence
+
+NEAR_ALL, ALL = 50.0, 100.5
+"""Between which the largest value lies; beyond it is no percentage, and of a few a count or a ratio has as many."""
+
+
+@dataclass(frozen=True)
+class Percentage(InASentence):
+    """A ``channel`` of unit "1" with values from ``low`` to ``high``."""
+
+    channel: str
+    low: float
+    high: float
+    write: str
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        return (
+            f'channel "{self.channel}": has the unit "1" and values from {self.low:.4g} to {self.high:.4g}, as of a share in percent '
+            "(a count may be as large)"
+        )
+
+
+def percentages(data: DataSet) -> Iterator[Percentage]:
+    """The channels of a data set that look so, over all of its experiments."""
+    for name, channel in data.channels.items():
+        if channel.unit != "1":
+            continue
+        values = np.concatenate([r.signals[name] for r in data.recordings if name in r.signals] or [np.empty(0)])
+        known = values[np.isfinite(values)]
+        low, high = (float(end) for end in (known.min(initial=np.inf), known.max(initial=-np.inf)))
+        if NEAR_ALL <= high <= ALL and low >= -ALL:
+            write = f'{name} = {{ …, file_unit = "%" }} if so' if data.path else "values divided by 100 if so"
+            yield Percentage(name, low, high, write)
