@@ -64,7 +64,8 @@ def design(
         precision: a free parameter of the recommended model; its standard deviation is made small instead.
         seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
         limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded; an input that was
-            constant in every recording is kept so.
+            constant in every recording is kept so, and one that is `"recorded"` there, or was never set in steps while others were, is
+            kept as recorded.
         controller: as the card's table [controller]; by default that table. An empty one is none.
         model: how to load the plain model, where ``found`` is a folder and the card names none.
         seed: draws inputs, their phases and levels.
