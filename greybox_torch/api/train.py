@@ -9,17 +9,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.api.arguments import (
-    check_device,
-    check_estimation,
-    check_kind,
-    check_model,
-    check_moving,
-    check_names,
-    check_told,
-    check_whole,
-)
+from greybox_torch.api.arguments import check_estimation, check_model, check_moving
 from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.plain_arguments import check_device, check_kind, check_names, check_told, check_whole
 from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import HYBRID, free_runs_of
