@@ -53,7 +53,8 @@ def train(
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states). By default friction at a body, else residual.
         port: where it acts; by default the first body that the model declares, and the first port of a model without bodies.
-        signals: what it reads, by their names at the port; by default the usual ones of such a port.
+        signals: what it reads, by their names at the port or by those of the model's states and inputs; by default the usual ones of such
+            a port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, odd, dissipative, memories.
         settings: of the training, its seed among them.
         explain: compare what was learned with every law of the library, and put the nearest in the network's place.
