@@ -140,8 +140,8 @@ class SnippetResult(Result):
         if self.snippet.said:
             return ""
         return (
-            f"Nothing of the effects of {self.model.title} can be expressed in {self.to}: the file holds remarks alone. Expected are effects "
-            "of joints, tendons and actuators; c, torch and fmu hold the whole model."
+            f"Nothing of the effects of {self.model.title} can be expressed in {self.to}: the file holds remarks alone. Expected are "
+            "effects of joints, tendons and actuators; c, torch and fmu hold the whole model."
         )
 
     def show(self, console: Console) -> None:
