@@ -62,6 +62,15 @@ def test_run_as_a_module(module: str) -> None:
     assert (result.stdout, result.stderr) == (greybox_torch.__version__ + "\n", "")
 
 
+def test_fleet_loads_torch_where_something_has_to_be_done() -> None:
+    """Seen: 10 s to say that nothing had changed."""
+    look = (
+        "import sys, greybox_torch.commands.fleet; print(sorted({'torch', 'scipy', 'distributed'} & set(sys.modules)))"
+    )
+    result = subprocess.run([sys.executable, "-c", look], capture_output=True, text=True, check=True)
+    assert result.stdout == "[]\n"
+
+
 @pytest.mark.parametrize("arguments", [["--help"], ["inspect", "--help"]])
 def test_help_loads_nothing_heavy(arguments: list[str]) -> None:
     """That it answers at once is for a benchmark to say; what would keep it is seen here."""

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from greybox_torch.api.arguments import check_seconds, check_seed, check_told
 from greybox_torch.api.design_loops import entries_of, loops_for
 from greybox_torch.api.design_result import DesignResult
 from greybox_torch.api.diagnosis_result import DiagnosisResult
@@ -17,6 +16,7 @@ from greybox_torch.api.expected import Expected
 from greybox_torch.api.hypotheses import Hypotheses, Kept, hypotheses_of, left_out_told, read_hypotheses, to_tell_apart
 from greybox_torch.api.inseparable import same_as_first, told_one_effect
 from greybox_torch.api.nothing_open import group_in_question
+from greybox_torch.api.plain_arguments import check_seconds, check_seed, check_told
 from greybox_torch.errors import ArgumentError, Kind, UserError, did_you_mean
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.experiment_design.aim import Aim, Trial
@@ -64,7 +64,8 @@ def design(
         precision: a free parameter of the recommended model; its standard deviation is made small instead.
         seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
         limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded; an input that was
-            constant in every recording is kept so.
+            constant in every recording is kept so, and one that is `"recorded"` there, or was never set in steps while others were, is
+            kept as recorded.
         controller: as the card's table [controller]; by default that table. An empty one is none.
         model: how to load the plain model, where ``found`` is a folder and the card names none.
         seed: draws inputs, their phases and levels.

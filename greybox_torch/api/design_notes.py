@@ -15,10 +15,15 @@ from greybox_torch.name_lists import listed
 if TYPE_CHECKING:
     from greybox_torch.api.design_result import DesignResult
 
+SMALL = 0.25
+"""Share of its range of which an input that takes less is small."""
+CLOSE = 0.02
+"""Share of its range within which an output is close to its limit."""
+
 
 def design_notes(found: DesignResult) -> list[str]:
     """Sentences for below the table, one a line."""
-    lines = [*found.left_out, *_told_apart(found), *_deviations(found), *recorded_as_limits(found)]
+    lines = [*found.left_out, *_told_apart(found), *_deviations(found), *recorded_as_limits(found), *_in_the_way(found)]
     if found.limits.seconds > 1.001 * found.seconds:
         lines.append(
             f"Designed for the first {digits(found.seconds, 4)} of {digits(found.limits.seconds, 4)} s; "
@@ -51,7 +56,8 @@ def recorded_as_limits(found: DesignResult) -> Iterator[str]:
     kinds = [f"for {listed(inputs)}"] if inputs else []
     kinds += [f"with {100 * WIDENED:.0f} % more either way for {listed(outputs)}"] if outputs else []
     if kinds:
-        few = "No limits are" if len(names) + len(limits.held) == len(ranges) else "Not all limits are"
+        rest = len(limits.held) + len(limits.not_in_steps)
+        few = "No limits are" if len(names) + rest == len(ranges) else "Not all limits are"
         yield f"{few} given under [limits] on the card (in Python limits=): the recorded range was taken, {', '.join(kinds)}."
     if limits.held:
         kept = [in_unit(f"{n} ({ranges[n].lower:.4g}", found.data.channels[n].unit) + ")" for n in limits.held]
@@ -60,6 +66,46 @@ def recorded_as_limits(found: DesignResult) -> Iterator[str]:
             f"Constant in every recording, and kept as {found.begins_like} has it, {verb} {listed(kept)}: "
             "with lower and upper under [limits] it would be designed."
         )
+    if limits.kept:
+        yield from _kept(found)
+
+
+def _in_the_way(found: DesignResult) -> Iterator[str]:
+    """Which limits of outputs keep inputs small that may move further."""
+    limits, channels = found.limits, found.data.channels
+    small = []
+    for name in (n for n in limits.designed if n not in found.follows):
+        low, high, own = found.inputs[name].min(), found.inputs[name].max(), limits.inputs[name]
+        if high - low < SMALL * (own.upper - own.lower):
+            small.append(
+                f"{name} ({in_unit(f'{low:.4g} to {high:.4g}', channels[name].unit)} of {own.lower:.4g} to {own.upper:.4g})"
+            )
+    reached = []
+    for k, (name, own) in enumerate(limits.outputs.items()):
+        low, high = (end([end(y[:, k]) for y in found.outputs]) for end in (min, max))
+        close = CLOSE * (own.upper - own.lower)
+        reached += [
+            (name, e) for e, gap in ((own.lower, low - own.lower), (own.upper, own.upper - high)) if gap < close
+        ]
+    if small and reached:
+        ends = listed([f"{name} is not to pass {in_unit(f'{end:.4g}', channels[name].unit)}" for name, end in reached])
+        yield f"Small is {listed(small)}, as {ends}: wider limits would give more room."
+
+
+def _kept(found: DesignResult) -> Iterator[str]:
+    """Which inputs are as they were recorded, why, and what that means."""
+    limits = found.limits
+    asked = [n for n in limits.kept if n not in limits.not_in_steps]
+    if asked:
+        yield f"Kept as in {found.begins_like}, as asked for: {listed(asked)}."
+    if limits.not_in_steps:
+        yield (
+            f"Kept as in {found.begins_like}: {listed(limits.not_in_steps)}, never set in steps, unlike other inputs, and so taken to be "
+            "measured, as weather is. With lower and upper under [limits] an input is designed."
+        )
+    length = min(len(trace) for trace in limits.kept.values())
+    again = " (beyond its end, backwards)" if length < len(found.time) else ""
+    yield f"That is what the prediction counts on{again}; where it comes otherwise, record what comes."
 
 
 def _beginning(found: DesignResult) -> Iterator[str]:

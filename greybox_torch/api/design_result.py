@@ -132,7 +132,7 @@ class DesignResult(Result):
 
     def content(self, folder: Path) -> dict[str, Any]:
         excitations = {
-            name: vars(e) if name in self._kinds else {"kind": "constant", "value": self.limits.commanded[name].lower}
+            name: vars(e) if name in self._kinds else self._not_designed(name)
             for name, e in zip(self.inputs, self.excitations, strict=True)
         }
         result: dict[str, Any] = {
@@ -219,6 +219,12 @@ class DesignResult(Result):
         """The kind of signal by input, of those that move."""
         kinds = {name: e.kind for name, e in zip(self.inputs, self.excitations, strict=True)}
         return {name: SPOKEN.get(kinds[name], kinds[name]) for name in self.limits.designed}
+
+    def _not_designed(self, name: str) -> dict[str, Any]:
+        """What an input is that is not designed."""
+        if name in self.limits.kept:
+            return {"kind": "as recorded", "recording": self.begins_like}
+        return {"kind": "constant", "value": self.limits.commanded[name].lower}
 
     @property
     def as_set_points(self) -> str:

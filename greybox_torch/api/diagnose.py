@@ -7,19 +7,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from greybox_torch.api.arguments import (
-    check_device,
-    check_estimation,
-    check_kind,
-    check_model,
-    check_moving,
-    check_seconds,
-    check_seed,
-    check_told,
-)
+from greybox_torch.api.arguments import check_estimation, check_model, check_moving
 from greybox_torch.api.asked_of_channels import asked_where_poor, poor
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
+from greybox_torch.api.plain_arguments import check_device, check_kind, check_seconds, check_seed, check_told
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until

@@ -130,11 +130,24 @@ class SnippetResult(Result):
                 {"element": one.element, "name": one.name, "attributes": dict(one.attributes)}
                 for one in self.snippet.said
             ],
+            "sentence": self.sentence,
             "not_said": self.rows,
         }
 
+    @property
+    def sentence(self) -> str:
+        """Where nothing could be said in the format: that; "" elsewhere."""
+        if self.snippet.said:
+            return ""
+        return (
+            f"Nothing of the effects of {self.model.title} can be expressed in {self.to}: the file holds remarks alone. Expected are "
+            "effects of joints, tendons and actuators; c, torch and fmu hold the whole model."
+        )
+
     def show(self, console: Console) -> None:
         console.print(Text(self.snippet.text), soft_wrap=True)
+        if self.sentence:
+            console.print(Text(self.sentence, style="bold"), soft_wrap=True)
         if self.snippet.unsaid:
             console.print(Text("What is not in it, or is to be known about it:"))
         for one in self.snippet.unsaid:

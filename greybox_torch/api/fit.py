@@ -6,20 +6,11 @@ import time
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from greybox_torch.api.arguments import (
-    check_device,
-    check_estimation,
-    check_model,
-    check_moving,
-    check_names,
-    check_precision,
-    check_seed,
-    check_told,
-    check_whole,
-)
+from greybox_torch.api.arguments import check_estimation, check_model, check_moving, check_precision
 from greybox_torch.api.asked_of_channels import asked_where_poor
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.fit_result import FitResult
+from greybox_torch.api.plain_arguments import check_device, check_names, check_seed, check_told, check_whole
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.fit import Estimation, fit_records

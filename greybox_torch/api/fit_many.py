@@ -7,19 +7,11 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from greybox_torch.api.arguments import (
-    check_device,
-    check_estimation,
-    check_model,
-    check_moving,
-    check_precision,
-    check_seed,
-    check_told,
-    check_whole,
-)
+from greybox_torch.api.arguments import check_estimation, check_model, check_moving, check_precision
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.fit import MOST_STARTS, fit
 from greybox_torch.api.fit_result import FitResult
+from greybox_torch.api.plain_arguments import check_device, check_seed, check_told, check_whole
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind, NumericalError, UserError
 from greybox_torch.estimate.comparison import Comparison

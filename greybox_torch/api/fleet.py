@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.api.arguments import check_device, check_seconds, check_seed, check_told, check_whole
-from greybox_torch.api.fleet_machine import diagnose_machine
+from greybox_torch.api.fleet_machine import diagnose_machine, without_a_diagnosis
 from greybox_torch.api.fleet_result import FleetResult
+from greybox_torch.api.plain_arguments import check_device, check_seconds, check_seed, check_told, check_whole
 from greybox_torch.cores import allowed_cores
-from greybox_torch.diagnosis.settings import settings_from_file, settings_from_mapping
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.files import absolute
 from greybox_torch.fleets import cluster
@@ -25,7 +25,6 @@ from greybox_torch.fleets.progress import Progress
 from greybox_torch.fleets.row import Row
 from greybox_torch.fleets.schedule import Killed, share_out
 from greybox_torch.keywords import names_checked
-from greybox_torch.systems import load_model, model_reference
 
 MOST_WORKERS = 4096
 
@@ -103,16 +102,34 @@ def _run(
     rows: list[Row] = []
     state = Progress(len(jobs))
     folders = list(dict.fromkeys([folder, *(job.card.parent for job in jobs)]))
+
+    def come(row: Row, kept: bool, state: Progress) -> Progress:
+        rows.append(row)
+        add(row)
+        return tell(state, row, kept)
+
     try:
-        with cluster.connected(scheduler, min(workers or allowed_cores(), len(jobs)), folders) as there:
-            for job, done in share_out(there, jobs, diagnose_machine):
-                row, kept = (killed_row(job), False) if isinstance(done, Killed) else done
-                rows.append(row)
-                add(row)
-                state = tell(state, row, kept)
+        # Workers take seconds to start, on this machine: for nothing, where nothing has changed.
+        at_once = {} if scheduler else dict(_settled(jobs, workers or allowed_cores()))
+        left = [job for job in jobs if job.name not in at_once]
+        for row, kept in at_once.values():
+            state = come(row, kept, state)
+        if left:
+            with cluster.connected(scheduler, min(workers or allowed_cores(), len(left)), folders) as there:
+                for job, done in share_out(there, left, diagnose_machine):
+                    row, kept = (killed_row(job), False) if isinstance(done, Killed) else done
+                    state = come(row, kept, state)
     except KeyboardInterrupt:
         return rows, False
     return rows, True
+
+
+def _settled(jobs: Sequence[Job], threads: int) -> Iterator[tuple[str, tuple[Row, bool]]]:
+    """By name, what is found of the jobs for which there is nothing to be diagnosed. Files are read side by side."""
+    with ThreadPoolExecutor(threads) as pool:
+        for job, found in zip(jobs, pool.map(without_a_diagnosis, jobs), strict=True):
+            if found is not None:
+                yield job.name, found
 
 
 def _tell(began: float, progress: Callable[[Progress], None], state: Progress, row: Row, kept: bool) -> Progress:
@@ -127,15 +144,25 @@ def _choices(
     """What holds for all, checked before any of them is begun."""
     if model is not None and not isinstance(model, str):
         raise ArgumentError("model", Kind.of(model), 'expected a name, such as "my_motor.py:Motor"')
+    reference = None  # what is imported here loads torch, which takes a second
+    if model is not None:
+        from greybox_torch.systems import load_model, model_reference
+
+        reference = model_reference(load_model(model))
     named: Mapping[str, Any] = {}
     said = "settings"
     if isinstance(settings, Mapping):
         named = dict(settings)
     elif settings is not None:
+        from greybox_torch.diagnosis.settings import settings_from_file
+
         named, said = settings_from_file(Path(settings)), fspath(settings)
-    settings_from_mapping(named, said)
+    if named:
+        from greybox_torch.diagnosis.settings import settings_from_mapping
+
+        settings_from_mapping(named, said)
     return Choices(
-        model=None if model is None else model_reference(load_model(model)),
+        model=reference,
         settings=named,
         settings_from=said,
         time_limit=None if time_limit is None else check_seconds("time_limit", time_limit),

@@ -11,7 +11,7 @@ from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.fleets.fingerprint import fingerprint
 from greybox_torch.fleets.job import Job
 from greybox_torch.fleets.row import Row
-from greybox_torch.fleets.store import store_failure, stored
+from greybox_torch.fleets.store import ROW, store_failure, stored
 
 
 def diagnose_machine(job: Job) -> tuple[Row, bool]:
@@ -20,7 +20,7 @@ def diagnose_machine(job: Job) -> tuple[Row, bool]:
     Whatever goes wrong with the data set is a row as well; only what ends the process is not.
     """
     began = time.perf_counter()
-    row = Row(job.name, str(job.card), "failed", machine=job.name)
+    row = _empty(job)
     try:
         card = read_card(job.card)
         row = row.described(card)
@@ -37,6 +37,26 @@ def diagnose_machine(job: Job) -> tuple[Row, bool]:
         kind, message = _why(error)
         row = replace(row, failure=kind, message=message, seconds=time.perf_counter() - began)
         return _failed(job, row), False
+
+
+def without_a_diagnosis(job: Job) -> tuple[Row, bool] | None:
+    """The same where there is nothing to be diagnosed: the card is at fault, or nothing has changed since an earlier run; else None."""
+    began, row = time.perf_counter(), _empty(job)
+    try:
+        card = read_card(job.card)
+        row = row.described(card)
+        done = stored(job, fingerprint(job, card)) if (job.folder / ROW).is_file() else None
+        return None if done is None else (done, True)
+    except UserError as error:
+        return _failed(
+            job, replace(row, failure="input", message=str(error), seconds=time.perf_counter() - began)
+        ), False
+    except Exception:  # of another kind: the worker that has it says what
+        return None
+
+
+def _empty(job: Job) -> Row:
+    return Row(job.name, str(job.card), "failed", machine=job.name)
 
 
 def _why(error: BaseException) -> tuple[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -16,7 +15,7 @@ from greybox_torch.fleets.charts import change_sentences
 from greybox_torch.fleets.history import History, histories
 from greybox_torch.fleets.in_common import Group, groups
 from greybox_torch.fleets.journal import JOURNAL, line
-from greybox_torch.fleets.page import ANSWER_WORDS, FAILURE_WORDS, PAGE, render_fleet
+from greybox_torch.fleets.page import ANSWER_WORDS, FAILURE_WORDS, PAGE, counted, render_fleet, told_as
 from greybox_torch.fleets.parquet import TABLE, parquet
 from greybox_torch.fleets.row import Row
 from greybox_torch.fleets.suggested_beliefs import SuggestedBeliefs, suggested_beliefs
@@ -41,7 +40,7 @@ _COLUMNS = [
     "after",
     "seconds",
 ]
-_COLOURS = {"named": "C0", "unknown": "C1", "nothing": "0.5", "unfinished": "0.7"}
+_COLOURS = {"named": "C0", "unknown": "C1", "missing": "C2", "nothing": "0.5", "unfinished": "0.7"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,8 +83,7 @@ class FleetResult(Result):
     @property
     def sentence(self) -> str:
         """How many data sets came to which answer."""
-        counts = Counter(row.answer for row in self.table)
-        told = ", ".join(f"{counts[answer]} {words}" for answer, words in ANSWER_WORDS.items() if counts[answer])
+        told = ", ".join(f"{count} {words}" for _, words, count in counted(self.table))
         stopped = f"; stopped with {self.waiting} to go" if self.waiting else ""
         return f"{len(self.table)} data sets: {told or 'none done'}{stopped}."
 
@@ -131,7 +129,7 @@ class FleetResult(Result):
         with plt.rc_context(STYLE):
             figure, axes = plt.subplots(figsize=(5.0, 4.6), layout="constrained")
             for answer, colour in _COLOURS.items():
-                told = [(r.fit_before, r.fit_after) for r in self.table if r.answer == answer]
+                told = [(r.fit_before, r.fit_after) for r in self.table if told_as(r) == answer]
                 known = [(before, after) for before, after in told if before is not None and after is not None]
                 if known:
                     axes.scatter(*zip(*known, strict=True), s=14, color=colour, label=ANSWER_WORDS[answer])
@@ -176,7 +174,7 @@ def _cells(row: Row) -> list[str | float]:
     value, std, before, after = ("" if n is None else n for n in numbers)
     return [
         row.dataset,
-        ANSWER_WORDS[row.answer],
+        ANSWER_WORDS[told_as(row)],
         row.effect,
         "" if sure is None or row.failed else sure,
         row.parameter,

@@ -13,9 +13,10 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.arguments import check_device, check_model, check_precision
+from greybox_torch.api.arguments import check_model, check_precision
 from greybox_torch.api.data_argument import check_data
 from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json, plot_free_runs
+from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.data import DataSet

@@ -9,17 +9,9 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from greybox_torch.api.arguments import (
-    check_device,
-    check_estimation,
-    check_kind,
-    check_model,
-    check_moving,
-    check_names,
-    check_told,
-    check_whole,
-)
+from greybox_torch.api.arguments import check_estimation, check_model, check_moving
 from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.plain_arguments import check_device, check_kind, check_names, check_told, check_whole
 from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import HYBRID, free_runs_of
@@ -61,7 +53,8 @@ def train(
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states). By default friction at a body, else residual.
         port: where it acts; by default the first body that the model declares, and the first port of a model without bodies.
-        signals: what it reads, by their names at the port; by default the usual ones of such a port.
+        signals: what it reads, by their names at the port or by those of the model's states and inputs; by default the usual ones of such
+            a port.
         network: further arguments of :class:`FrictionNet`, :class:`ResidualNet` or :class:`MemoryNet`: units, odd, dissipative, memories.
         settings: of the training, its seed among them.
         explain: compare what was learned with every law of the library, and put the nearest in the network's place.

@@ -58,7 +58,7 @@ def print_explanation(
     console.print(Text(f"\n{explained_sentence(explained, scores, judged=judged)}", style="bold"), soft_wrap=True)
     if not explained.curves:
         return
-    shares = ", ".join(f"{curve.signal} {100 * curve.share:.0f} %" for curve in explained.curves)
+    shares = ", ".join(f"{curve.told} {100 * curve.share:.0f} %" for curve in explained.curves)
     console.print(Text(f"Share of the learned {adds} that each signal alone explains: {shares}"), soft_wrap=True)
     if told := open_sign(explained.curves):
         console.print(Text(told), soft_wrap=True)
@@ -109,7 +109,7 @@ def _not_refitted(match: Match, explained: Explanation) -> str:
 
 def open_sign(curves: Sequence[SignalCurve]) -> str:
     """A sentence where the band contains zero over most of what was visited; "" where none does."""
-    wide = [f"{curve.signal} {100 * curve.zero_within:.0f} %" for curve in curves if curve.zero_within > MOST_OF_IT]
+    wide = [f"{curve.told} {100 * curve.zero_within:.0f} %" for curve in curves if curve.zero_within > MOST_OF_IT]
     if not wide:
         return ""
     return (

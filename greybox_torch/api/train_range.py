@@ -15,6 +15,7 @@ from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Trained
 from greybox_torch.training.learned_force import visited_signals
+from greybox_torch.training.signal_names import spoken
 
 MARGIN = 0.01
 """Share of the range that was learned over by which a signal may leave it."""
@@ -42,8 +43,8 @@ class Beyond:
         learned = f"{low:.3g} to {in_unit(f'{high:.3g}', self.unit)}"
         visited = f"{least:.3g} to {in_unit(f'{most:.3g}', self.unit)}"
         return (
-            f"In {digits(100 * self.share)} % of the validation samples the network's {self.signal} is outside the range over which it was "
-            f"learned ({learned}; in validation {visited}): what the network says there is extrapolated."
+            f"In {digits(100 * self.share)} % of the validation samples the network's {spoken(self.signal)} is outside the range over "
+            f"which it learned ({learned}; in validation {visited}): what the network says there is extrapolated."
         )
 
     def as_json(self) -> dict[str, Any]:

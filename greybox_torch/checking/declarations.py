@@ -41,9 +41,18 @@ def unusable_names(made: type[GreyBoxModel], source: Source) -> Iterator[Finding
             yield Finding(
                 "error", "declaration", found, f'another name, or ["{item.name}"] everywhere', source.file, line
             )
-        elif not item.name.isidentifier() or keyword.iskeyword(item.name):
+        elif not _an_attribute(item.name):
             found = f"'{item.name}' cannot be written as `.{item.name}` in Python"
             yield Finding("warning", "declaration", found, f'["{item.name}"], or another name', source.file, line)
+
+
+def read_as(handed: str, name: str) -> str:
+    """How equations read what is called ``name`` from what they are ``handed``: `u.voltage`, `u["su n"]`."""
+    return f"{handed}.{name}" if _an_attribute(name) and name not in _METHODS else f'{handed}["{name}"]'
+
+
+def _an_attribute(name: str) -> bool:
+    return name.isidentifier() and not keyword.iskeyword(name)
 
 
 def port_signals(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from greybox_torch.checking.declarations import read_as
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.influence import Influence
 from greybox_torch.checking.source import Source
@@ -30,7 +31,7 @@ def without_effect(
                 ),
                 "a smooth form, such as torch.sigmoid((a - b) / width), or fixed=True"
                 if stepwise
-                else f"p.{parameter.name} in derivative() or output(), or nothing of it",
+                else f"{read_as('p', parameter.name)} in derivative() or output(), or nothing of it",
                 source.file,
                 source.line_of(f'"{parameter.name}"'),
             )
@@ -40,14 +41,17 @@ def without_effect(
                 "warning",
                 "influence",
                 f"port '{port.name}' reaches no output: nothing that is attached there could be found",
-                f"port.{port.name} among the forces in derivative()",
+                f"{read_as('port', port.name)} among the forces in derivative()",
                 source.file,
                 source.line_of(f'"{port.name}"'),
             )
     for i, signal in enumerate(model.inputs):
         if not influence.moves["input"][i].any():
             serves = _port_that_reads(model, signal.name)
-            found, write = f"input '{signal.name}' moves no output", f"u.{signal.name} in derivative() or output()"
+            found, write = (
+                f"input '{signal.name}' moves no output",
+                f"{read_as('u', signal.name)} in derivative() or output()",
+            )
             if serves:
                 found += f": laws that are attached at port '{serves}' may depend on it, the model does not"
                 write = f"it as it is, if that is meant; else {write}"

@@ -9,8 +9,9 @@ import torch
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.arguments import check_device, check_precision, named_model
+from greybox_torch.api.arguments import check_precision, named_model
 from greybox_torch.api.data_warnings import data_warnings
+from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.simulate import START
 from greybox_torch.checkpoint import checkpoint_name
 from greybox_torch.commands.options import Options

@@ -76,7 +76,8 @@ def _selected(
     try:
         with until(end):
             while last.complete and last.others is not None:
-                more = _promotion(last, last.others)
+                spent = len(last.more) >= last.study.settings.most_promoted
+                more = None if spent else _promotion(last, last.others)
                 if more is None:
                     break
                 names = _chosen_with(more.dataset)

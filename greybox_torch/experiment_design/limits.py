@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from numbers import Real
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.errors import UserError, did_you_mean, quoted
+from greybox_torch.experiment_design.as_recorded import AS_RECORDED, as_recorded, has_range, traces_of
 from greybox_torch.model import GreyBoxModel
 
 SECONDS, START = "seconds", "start"
@@ -21,8 +22,8 @@ ROUNDING = 1e-9
 """Share of its size by which a constant may seem to move: interpolation between equal samples rounds."""
 
 EVERY_INPUT = (
-    "Every input that may move is designed: one that nobody can set, as a recorded temperature, is given limits as narrow as it stays by "
-    "itself, or lower = upper ([limits] on the card, in Python limits=)."
+    f'Every input that may move is designed. One that nobody can set, as a recorded temperature, is kept as it was with "{AS_RECORDED}" in '
+    "the place of its limits ([limits] on the card, in Python limits=)."
 )
 """What a reader has to know of a model with several inputs."""
 
@@ -51,7 +52,8 @@ class Limits:
     ``set_points`` has the range of the set point for every input that a loop drives. ``begin``: where what is commanded begins, by input,
     of set points and of inputs whose rate is limited. ``start``: states that the recording is to begin with. ``recorded``: inputs and
     outputs that nothing is given for, whose range is what was recorded. ``held``: inputs that no range is given for and that were
-    constant in every recording, kept so.
+    constant in every recording, kept so. ``kept``: by name, inputs (N,) that are as the recording had them that the next one begins like;
+    ``not_in_steps`` are those of them that nothing asks for.
     """
 
     seconds: float
@@ -63,11 +65,13 @@ class Limits:
     begin: Mapping[str, float] = field(default_factory=dict)
     recorded: tuple[str, ...] = ()
     held: tuple[str, ...] = ()
+    kept: Mapping[str, np.ndarray] = field(default_factory=dict)
+    not_in_steps: tuple[str, ...] = ()
 
     @property
     def designed(self) -> list[str]:
         """Inputs, or those whose set point, may move."""
-        return [name for name, own in self.commanded.items() if own.half > 0.0]
+        return [name for name, own in self.commanded.items() if own.half > 0.0 and name not in self.kept]
 
     @property
     def commanded(self) -> dict[str, Range]:
@@ -86,7 +90,7 @@ def limits_of(
 
     Args:
         given: as the card's table [limits] has them: ``seconds``, ``start`` by state, and by input, output or state
-            ``{ lower, upper, rate }``.
+            ``{ lower, upper, rate }``; of an input ``"recorded"`` as well.
         place: how a message begins.
         follows: the output that each input follows which a loop drives. Set points have the range that the output is given, else what
             was recorded, and its rate.
@@ -106,8 +110,12 @@ def limits_of(
             )
     recorded = max(r.seconds for r in data.recordings)
     seconds = _positive(given.get(SECONDS, recorded), f"{place} {SECONDS}")
-    ranges = {n: _range(given.get(n), f"{place} {n}", _recorded(data, n, 0.0), may_rest=True) for n in inputs}
-    held = tuple(n for n in inputs if n not in (follows or {}) and not _has_range(given.get(n)) and _constant(data, n))
+    open_ones = [n for n in inputs if n not in (follows or {})]
+    ranges = {
+        n: _range(_own(given, n, open_ones), f"{place} {n}", _recorded(data, n, 0.0), may_rest=True) for n in inputs
+    }
+    held = tuple(n for n in open_ones if not has_range(given.get(n)) and _constant(data, n))
+    kept = as_recorded(data, [n for n in open_ones if n not in held], given)
     found = Limits(
         seconds,
         ranges,
@@ -115,22 +123,27 @@ def limits_of(
         {n: _range(entry, f"{place} {n}", None) for n, entry in given.items() if n in own and n not in outputs},
         {n: _range(given.get(o), f"{place} {o}", _recorded(data, o, 0.0)) for n, o in (follows or {}).items()},
         {} if START in signals else _start(given.get(START, {}), sorted(own), f"{place} {START}"),
-        recorded=tuple(n for n in (*inputs, *outputs) if n not in given and n not in held),
+        recorded=tuple(n for n in (*inputs, *outputs) if n not in given and n not in (*held, *kept)),
         held=held,
+        kept=traces_of(data.recordings[0], kept),
+        not_in_steps=tuple(n for n in kept if given.get(n) != AS_RECORDED),
     )
     return held_as_in(found, data.recordings[0])
 
 
 def held_as_in(limits: Limits, recording: Recording) -> Limits:
-    """The limits with the inputs that are ``held`` at what they were in a recording: the one that the next begins like."""
+    """The limits with the inputs that are ``held`` or ``kept`` as they were in a recording: the one that the next begins like."""
     at = {name: float(np.nanmedian(recording.signals[name])) for name in limits.held}
     return replace(
-        limits, inputs=dict(limits.inputs) | {n: replace(limits.inputs[n], lower=v, upper=v) for n, v in at.items()}
+        limits,
+        inputs=dict(limits.inputs) | {n: replace(limits.inputs[n], lower=v, upper=v) for n, v in at.items()},
+        kept=traces_of(recording, list(limits.kept)),
     )
 
 
-def _has_range(entry: Any) -> bool:
-    return isinstance(entry, Mapping) and not {"lower", "upper"}.isdisjoint(entry)
+def _own(given: Mapping[str, Any], name: str, open_ones: Sequence[str]) -> Any:
+    """What is given for an input; nothing where it is to be as recorded, which one that a loop drives cannot be."""
+    return None if given.get(name) == AS_RECORDED and name in open_ones else given.get(name)
 
 
 def _constant(data: DataSet, name: str) -> bool:
@@ -165,6 +178,7 @@ def _range(entry: Any, place: str, default: Range | None, *, may_rest: bool = Fa
     if not isinstance(entry, Mapping) or not set(entry) <= {"lower", "upper", "rate"}:
         raise UserError(
             f"{place}: found {quoted(entry)}; expected {{ lower = …, upper = …, rate = … }}, or some of these"
+            f"{f', or {quoted(AS_RECORDED)}' if may_rest else ''}"
         )
     lower = _number(entry.get("lower", -math.inf if default is None else default.lower), f"{place}, lower")
     upper = _number(entry.get("upper", math.inf if default is None else default.upper), f"{place}, upper")

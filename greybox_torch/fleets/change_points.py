@@ -16,7 +16,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 FEWEST = 6
 """Recordings below which no change can be told from chance."""
@@ -91,6 +90,8 @@ def chance_of_a_shift(values: Values) -> float:
         left = float(np.sum((first - first.mean()) ** 2) + np.sum((second - second.mean()) ** 2)) / (n - 2)
         shift = abs(float(first.mean() - second.mean())) / math.sqrt(1.0 / k + 1.0 / (n - k))
         largest = max(largest, shift / math.sqrt(left) if left > 0.0 else math.inf if shift > 0.0 else 0.0)
+    from scipy import stats  # a fifth of a second to import
+
     return min(1.0, float(len(places) * 2.0 * stats.t.sf(largest, n - 2)))
 
 
@@ -125,6 +126,8 @@ def chance_of_presence(values: Values) -> float:
 
 def _two_sided(n: int, total: int, k: int) -> Values:
     """Fisher's exact probability of the table with s of the ``total`` ones among the first k of n, for s from 0 to ``total``."""
+    from scipy import stats
+
     chances = stats.hypergeom.pmf(np.arange(total + 1), n, total, k)
     order = np.argsort(chances)
     summed = np.cumsum(chances[order])

@@ -69,8 +69,9 @@ def _title(series: Series) -> str:
 
 def _panel(series: Series) -> Panel:
     spread = np.nan_to_num(2.0 * series.deviations)
-    span = max(float(np.ptp(series.days)), 1e-3)
-    x = Dates(float(series.days[0]) - 0.05 * span, float(series.days[-1]) + 0.05 * span)
+    span = float(np.ptp(series.days))
+    room = 0.05 * span or HOURS_BELOW  # about one date: days, as hours would tell no year
+    x = Dates(float(series.days[0]) - room, float(series.days[-1]) + room)
     y = Scale(-0.15, 1.15) if series.presence else linear(series.values - spread, series.values + spread, room=0.12)
     label = "" if series.presence else text.with_unit(series.name.rpartition(".")[2], f"[{series.unit or '1'}]")
     alt = f"{_title(series)} over {len(series.values)} recordings from {series.dates[0]} to {series.dates[-1]}"

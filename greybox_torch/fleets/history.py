@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.fleets.change_points import LEVEL, ChangePoint, change_points
+from greybox_torch.fleets.change_points import FEWEST, LEVEL, ChangePoint, change_points
 from greybox_torch.fleets.row import Row
 
 PRESENCE = LEVEL / 2.0
@@ -59,6 +59,11 @@ class History:
     machine: str
     rows: tuple[Row, ...]
     series: tuple[Series, ...]
+
+    @property
+    def tested(self) -> bool:
+        """Whether there are enough recordings to tell a change from chance."""
+        return len(self.rows) >= FEWEST
 
     @property
     def changed(self) -> bool:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 
 from greybox_torch import __version__
+from greybox_torch.fleets.change_points import FEWEST
 from greybox_torch.fleets.charts import change_sentences, history_chart
 from greybox_torch.fleets.history import History
 from greybox_torch.fleets.in_common import Group
@@ -28,7 +29,8 @@ MOST_HISTORIES = 60
 
 ANSWER_WORDS = {
     "named": "an effect with a name",
-    "unknown": "something without a name",
+    "unknown": "an unknown effect",
+    "missing": "something without a name",
     "nothing": "nothing missing",
     "unfinished": "no answer yet",
     "failed": "failed",
@@ -48,6 +50,7 @@ class Line:
 
     row: Row
     tag: str
+    answer: str
     verdict: str
     detail: str
     how_sure: str
@@ -64,7 +67,19 @@ class Course:
     machine: str
     anchor: str
     sentences: list[str]
+    otherwise: str
     chart: Chart
+
+
+def told_as(row: Row) -> str:
+    """The answer of a row, an unknown effect set apart from what is only known to be missing: one of :data:`ANSWER_WORDS`."""
+    return "missing" if row.answer == "unknown" and not row.effect else row.answer
+
+
+def counted(rows: Iterable[Row]) -> list[tuple[str, str, int]]:
+    """How many rows came to which answer, and that in words, in the order in which they are told."""
+    counts = Counter(told_as(row) for row in rows)
+    return [(answer, words, counts[answer]) for answer, words in ANSWER_WORDS.items() if counts[answer]]
 
 
 def render_fleet(
@@ -83,14 +98,14 @@ def render_fleet(
     """
     counts = Counter(row.answer for row in rows)
     drawn = [
-        Course(c.machine, f"course-{k}", change_sentences(c), history_chart(c))
+        Course(c.machine, f"course-{k}", change_sentences(c), _unchanged(c), history_chart(c))
         for k, c in enumerate(courses[:MOST_HISTORIES])
     ]
     return _environment().get_template("fleet.html.j2").render(
         version=__version__,
         lines=[_line(row) for row in rows[:MOST_ROWS]],
         left_out=max(0, len(rows) - MOST_ROWS),
-        counts=[(answer, words, counts[answer]) for answer, words in ANSWER_WORDS.items() if counts[answer]],
+        counts=counted(rows),
         headline=_headline(rows, courses, counts),
         dated=any(row.recorded for row in rows),
         waiting=waiting,
@@ -104,16 +119,25 @@ def render_fleet(
 
 
 def _headline(rows: Sequence[Row], courses: Sequence[History], counts: Counter[str]) -> str:
-    machines = len({row.machine for row in rows})
+    # of a card that cannot be read no machine is known
+    machines = len({row.machine for row in rows if not row.failed})
     missing = len({row.machine for row in rows if row.answer in ("named", "unknown")})
     parts = [f"{machines} machine{'s' * (machines != 1)}: in {missing} something is missing from the model"]
-    if courses:
-        parts.append(f"{sum(c.changed for c in courses)} of {len(courses)} recorded over time changed")
+    tested = [c for c in courses if c.tested]
+    if tested:
+        parts.append(f"{sum(c.changed for c in tested)} of {len(tested)} recorded over time changed")
     if counts["unfinished"]:
         parts.append(f"{counts['unfinished']} data set{'s' * (counts['unfinished'] != 1)} without an answer yet")
     if counts["failed"]:
         parts.append(f"{counts['failed']} data set{'s' * (counts['failed'] != 1)} failed")
     return "; ".join(parts) + "."
+
+
+def _unchanged(history: History) -> str:
+    """What is said of a machine of which no change is told."""
+    if history.tested:
+        return "No change that is more than chance."
+    return f"{len(history.rows)} dated verdicts are too few to tell a change from chance; {FEWEST} are needed."
 
 
 def _standing_out(courses: Sequence[Course], common: Sequence[Group]) -> list[tuple[str, str, str]]:
@@ -135,8 +159,9 @@ def _line(row: Row) -> Line:
     value = "" if row.value is None else text.with_unit(text.measured(row.value, row.std), row.unit)
     return Line(
         row=row,
-        tag=FAILURE_WORDS.get(row.failure, "failed") if row.failed else ANSWER_WORDS[row.answer],
-        verdict=text.first_capital(row.effect) or text.first_capital(ANSWER_WORDS[row.answer]),
+        tag=FAILURE_WORDS.get(row.failure, "failed") if row.failed else ANSWER_WORDS[told_as(row)],
+        answer=told_as(row),
+        verdict=text.first_capital(row.effect) or text.first_capital(ANSWER_WORDS[told_as(row)]),
         detail=row.message if row.failed else row.sentence,
         how_sure="" if sure is None or row.answer in ("failed", "unfinished") else f"{sure:.2f}",
         parameter=f"{row.parameter} = {value}" if value else "",

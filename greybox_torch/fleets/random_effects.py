@@ -13,7 +13,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 FEWEST = 5
 """Machines below which a deviation between them says too little."""
@@ -46,6 +45,8 @@ def common(values: Values, deviations: Values) -> Common:
     Deleted residuals are compared with Student's t of n - 2 degrees of freedom, as the deviation between machines is itself estimated, at
     the level :data:`LEVEL` shared among the machines (Bonferroni).
     """
+    from scipy import stats  # a fifth of a second to import
+
     variances = deviations**2
     mean, variance, between = _moments(values, variances)
     spread = between**2 + variances

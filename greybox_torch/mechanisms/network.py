@@ -18,6 +18,11 @@ from greybox_torch.model import Parameter, Signals
 MOST_UNITS = 256
 
 
+def own_name(signal: str) -> str:
+    """What parameters are called by that belong to a signal: of one from elsewhere in the model without the sign in its name."""
+    return signal.replace("@", "_")
+
+
 class Network(Mechanism):
     """One hidden layer of ``units`` at a port, reading the local signals ``inputs``.
 
@@ -38,6 +43,7 @@ class Network(Mechanism):
         self.units = units
         self.seed = seed
         self.needs = self.inputs
+        self.reads = tuple(name for name in self.inputs if "@" in name)
         if not self.inputs or len(set(self.inputs)) < len(self.inputs):
             raise UserError(f"{self.name}: inputs are {list(self.inputs)}; expected one signal or more, each once")
         if not (isinstance(units, int) and 1 <= units <= MOST_UNITS):
@@ -58,14 +64,18 @@ class Network(Mechanism):
             low, high = self.span(name, around)
             unit, half = around.units.get(name, ""), max(0.5 * (high - low), 1e-9 * max(abs(low), abs(high), 1e-3))
             result.append(
-                Parameter(f"{name}_centre", 0.5 * (low + high), unit, fixed=True, description=f"middle of {name}")
+                Parameter(
+                    f"{own_name(name)}_centre", 0.5 * (low + high), unit, fixed=True, description=f"middle of {name}"
+                )
             )
-            result.append(Parameter(f"{name}_scale", half, unit, fixed=True, description=f"half the range of {name}"))
+            result.append(
+                Parameter(f"{own_name(name)}_scale", half, unit, fixed=True, description=f"half the range of {name}")
+            )
         return result
 
     def scaled(self, s: Signals, p: Signals) -> dict[str, Any]:
         """The inputs σ as the hidden layer reads them."""
-        return {name: (s[name] - p[f"{name}_centre"]) / p[f"{name}_scale"] for name in self.inputs}
+        return {name: (s[name] - p[f"{own_name(name)}_centre"]) / p[f"{own_name(name)}_scale"] for name in self.inputs}
 
     def heights(self, around: Surroundings, *, lower: float | None = None) -> list[Parameter]:
         """The weights of the output, in the unit of the port's force."""
@@ -87,13 +97,15 @@ class Network(Mechanism):
             direction = rng.normal(size=len(self.inputs))
             slopes = max(1.0, 0.4 * self.units) * direction / np.linalg.norm(direction)
             for name, slope in zip(self.inputs, slopes, strict=True):
-                result.append(Parameter(f"{name}_{k}", float(slope), "", description=f"weight of {name} in unit {k}"))
+                result.append(
+                    Parameter(f"{own_name(name)}_{k}", float(slope), "", description=f"weight of {name} in unit {k}")
+                )
             result.append(Parameter(f"bias_{k}", -float(slopes @ place), "", description=f"bias of unit {k}"))
         return result
 
     def leaning(self, sigma: dict[str, Any], p: Signals, k: int) -> Any:
         """What hidden unit ``k`` is a function of: its bias and the weighted inputs."""
-        return p[f"bias_{k}"] + sum(p[f"{name}_{k}"] * sigma[name] for name in self.inputs)
+        return p[f"bias_{k}"] + sum(p[f"{own_name(name)}_{k}"] * sigma[name] for name in self.inputs)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         return [Probe(tuple(f"out_{k}" for k in range(self.units)))]

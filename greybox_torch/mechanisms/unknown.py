@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import torch
 
+from greybox_torch.in_unit import in_unit
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
 from greybox_torch.model import Parameter, Signals
 from greybox_torch.model.own_rate import RATE
@@ -73,19 +74,21 @@ class Unknown(Mechanism):
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         centres = self.centres(around)
-        unit = around.units.get(self.signal, "")
+        unit, over = around.units.get(self.signal, ""), self.signal.removeprefix(INPUT)
         heights = [
             Parameter(
                 f"w_{k}",
                 0.0,
                 self.force_unit(around),
-                description=f"height at {centres[k]:g}",
+                description=f"height at {over} = {in_unit(f'{centres[k]:g}', unit)}",
                 shrunk=True,
             )
             for k in self.bumps
         ]
-        first = Parameter("first", centres[0], unit, fixed=True, description="first centre")
-        spacing = Parameter("spacing", centres[1] - centres[0], unit, fixed=True, description="distance of the centres")
+        first = Parameter("first", centres[0], unit, fixed=True, description=f"first centre over {over}")
+        spacing = Parameter(
+            "spacing", centres[1] - centres[0], unit, fixed=True, description=f"distance of the centres over {over}"
+        )
         return [*heights, first, spacing]
 
     def force_unit(self, around: Surroundings) -> str:

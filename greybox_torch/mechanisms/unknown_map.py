@@ -57,8 +57,10 @@ def _grid(signal: str, around: Surroundings) -> list[Parameter]:
     reached, unit = around.ranges[signal], around.units.get(signal, "")
     spacing = reached.span / (KNOTS - 3)
     return [
-        Parameter(f"first_{signal}", reached.low - spacing, unit, fixed=True, description="first centre"),
-        Parameter(f"spacing_{signal}", spacing, unit, fixed=True, description="distance of the centres"),
+        Parameter(
+            f"first_{signal}", reached.low - spacing, unit, fixed=True, description=f"first centre over {signal}"
+        ),
+        Parameter(f"spacing_{signal}", spacing, unit, fixed=True, description=f"distance of the centres over {signal}"),
     ]
 
 

@@ -41,7 +41,7 @@ def plot_learned(found: Trained, explained: Explanation, title: str) -> Figure:
         panels = np.atleast_1d(figure.subplots(1, len(curves), sharey=True))
         for axes, curve in zip(panels, curves, strict=True):
             _draw(axes, curve)
-            axes.set_xlabel(with_unit(curve.signal, curve.unit))
+            axes.set_xlabel(with_unit(curve.told, curve.unit))
         panels[0].set_ylabel(
             with_unit(f"{found.hybrid.adds} at {network.port}", found.hybrid.surroundings[network.port].force_unit)
         )
@@ -65,7 +65,7 @@ def _draw(axes: Axes, curve: SignalCurve) -> None:
     axes.fill_between(curve.values, low, high, color="#0b6e99", alpha=0.2, linewidth=0, label="two deviations")
     axes.plot(curve.values, curve.force, color="#0b6e99", linewidth=1.6, label="learned")
     axes.axhline(0.0, color="black", linewidth=0.6)
-    told = f"{100 * curve.share:.0f} % of the variance of what was learned is a function of {curve.signal} alone"
+    told = f"{100 * curve.share:.0f} % of the variance of what was learned is a function of {curve.told} alone"
     if curve.zero_within > 0:
         told += f"\nzero lies within the band over {100 * curve.zero_within:.0f} % of what was visited"
     axes.set_title(told, fontsize=9)
@@ -82,7 +82,7 @@ def _draw_laws(axes: Axes, curve: SignalCurve, found: Trained, explained: Explan
         offset, slope = line_beside(curve, values, force, slopes)
         moved |= offset != 0.0 or slope != 0.0
         by = f" {'+' if offset > 0 else '−'} {text.with_unit(digits(abs(offset)), unit)}" if offset else ""
-        by += f" {'+' if slope > 0 else '−'} {digits(abs(slope))} {curve.signal}" if slope else ""
+        by += f" {'+' if slope > 0 else '−'} {digits(abs(slope))} {curve.told}" if slope else ""
         axes.plot(
             values, force + offset + slope * values, "--", color=colour, linewidth=1.1, label=f"{mechanism.name}{by}"
         )

@@ -19,6 +19,7 @@ from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
+from greybox_torch.training.signal_names import INPUT, local_names, readable, spoken
 
 NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet, "memory": MemoryNet}
 """By the name that users choose them by."""
@@ -96,7 +97,7 @@ def network_at(
     if port is None and net == "friction" and driving_body(model.ports) is None:
         raise ArgumentError("net", net, f'model {model.title} has no body; expected the net "residual"')
     site = port_named(model, port or default_port(model))
-    return site, make_network(net, site, signals, **options)
+    return site, make_network(net, site, local_names(model, site, signals), **options)
 
 
 def make_network(net: str, port: Port, signals: Sequence[str], **options: object) -> Network:
@@ -137,11 +138,11 @@ def port_named(model: GreyBoxModel, name: str) -> Port:
 
 def check_signals(network: Mechanism, port: Port, around: Surroundings) -> None:
     """Raises UserError where ``network`` reads a signal that there is not around ``port``."""
-    known = [name for name in around.ranges if name != "delayed" and "@" not in name]
+    known = readable(around)
     for signal in network.needs:
         if signal not in known:
-            hint = did_you_mean(signal, known)
-            problem = f"there is no such signal at {port.name}{hint}; there is: {', '.join(known)}"
+            told = [spoken(name) if name.startswith(INPUT) else name for name in known]
+            problem = f"there is no such signal at {port.name}{did_you_mean(signal, told)}; there is: {', '.join(told)}"
             raise ArgumentError("signals", signal, problem)
 
 

@@ -14,6 +14,7 @@ from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.model import Signals
 from greybox_torch.training.polish import PenalisedRun
+from greybox_torch.training.signal_names import spoken
 from greybox_torch.training.trained import Trained
 
 MOST_SAMPLES = 4000
@@ -51,6 +52,11 @@ class SignalCurve:
     force: np.ndarray
     deviation: np.ndarray
     share: float
+
+    @property
+    def told(self) -> str:
+        """The signal as it is told."""
+        return spoken(self.signal)
 
     @property
     def zero_within(self) -> float:

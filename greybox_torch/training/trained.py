@@ -10,10 +10,11 @@ import torch
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.training.curriculum import Curriculum
-from greybox_torch.training.hybrid import Hybrid
+from greybox_torch.training.hybrid import Hybrid, port_named
 from greybox_torch.training.physics import Physics
 from greybox_torch.training.polish import Polished
 from greybox_torch.training.settings import TrainingSettings
+from greybox_torch.training.signal_names import local_names
 from greybox_torch.training.state import Epoch
 
 
@@ -66,5 +67,8 @@ class Trained:
         """The network's own force at given local signals (arrays of one shape, in their units), in the unit of the port's force."""
         problem, network = self.result.problem, self.hybrid.network
         assert isinstance(problem.model, AugmentedModel)
-        local = {name: torch.as_tensor(np.asarray(value, dtype=float)) for name, value in signals.items()}
+        names = local_names(problem.model.base, port_named(problem.model.base, network.port), signals)
+        local = {
+            name: torch.as_tensor(np.asarray(v, dtype=float)) for name, v in zip(names, signals.values(), strict=True)
+        }
         return problem.model.curve(network, local, problem.parameter_tensors).detach().numpy()

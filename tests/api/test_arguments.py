@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.arguments import check_seconds, check_seed
+from greybox_torch.api.plain_arguments import check_seconds, check_seed
 from tests.api.motor import Motor
 
 

@@ -60,3 +60,14 @@ def test_other_names_of_arguments_are_fine(machines: Path, tmp_path: Path) -> No
         text.replace(OUTPUT, "output(self, state, u, p)").replace('"speed": x.', '"speed": state.')
     )
     assert examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings == ()
+
+
+def test_a_name_that_is_no_attribute_is_read_by_its_text(machines: Path, tmp_path: Path) -> None:
+    """Seen: `u.su n` to be written, below the line that says that this is no Python."""
+    text = (machines / "motor.py").read_text()
+    inputs = 'inputs = [Input("su n", "V"), '
+    assert text.count("inputs = [") == 1
+    (tmp_path / "motor.py").write_text(text.replace("inputs = [", inputs))
+    found = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    (one,) = [f for f in found if f.found.startswith("input 'su n' moves no output")]
+    assert one.write == 'u["su n"] in derivative() or output()'

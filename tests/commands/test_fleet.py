@@ -120,10 +120,12 @@ def test_what_is_written_and_printed(plant: Path, done: list[str]) -> None:
     assert "3 of 3 done" in result.stderr
 
 
-def test_a_restart_does_what_is_new_or_changed(plant: Path, done: list[str]) -> None:
+def test_a_restart_does_what_is_new_or_changed(plant: Path, done: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
     fleet(plant)
     done.clear()
-    again = fleet(plant)
+    with monkeypatch.context() as without_workers:
+        without_workers.delattr(cluster, "connected")
+        again = fleet(plant)
     assert done == [] and "(3 unchanged)" in again.stderr
     (plant / "b" / "steps.csv").write_text("v\n1\n3\n")
     add(plant / "c", "c")

@@ -88,7 +88,8 @@ def test_precision(undecided) -> None:
     long = replace(found, time=np.arange(3600.0))
     assert long.sentence.startswith("3600 s of ")  # seen: 3.6e+03 s
     ranges = {**found.limits.inputs, "room": found.limits.inputs["voltage"]}
-    two = replace(found, limits=replace(found.limits, inputs=ranges))
+    inputs = {**found.inputs, "room": found.inputs["voltage"]}
+    two = replace(found, limits=replace(found.limits, inputs=ranges), inputs=inputs)
     assert EVERY_INPUT in two.notes
     correlated = replace(found, memory=510.0)
     assert any("correlated over up to 510 samples, and so many count as one" in line for line in correlated.notes)

@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import greybox_torch as gt
 from greybox_torch.mechanisms.attachment import attach
@@ -195,6 +196,10 @@ def test_a_tank_has_no_joints(machines: Path) -> None:
     made = gt.export(model, to="mjcf")
     assert made.snippet.said == ()
     assert len(made.rows) == 2
+    assert made.to_dict()["sentence"].startswith("Nothing of the effects of Tank can be expressed in mjcf")
+    console = Console(record=True, width=200)
+    made.show(console)
+    assert made.sentence[:60] in console.export_text()
 
 
 @pytest.mark.parametrize(("asymmetry", "effort"), [({}, 0.4), ({"asymmetry": -0.25}, 0.3)])

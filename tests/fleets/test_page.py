@@ -10,9 +10,11 @@ from pathlib import Path
 
 import pytest
 
+from greybox_torch.api.fleet_result import FleetResult
+from greybox_torch.fleets.charts import history_chart
 from greybox_torch.fleets.history import histories
 from greybox_torch.fleets.in_common import groups
-from greybox_torch.fleets.page import render_fleet
+from greybox_torch.fleets.page import counted, render_fleet
 from greybox_torch.fleets.row import Row
 from tests.browser import BROWSER, needs_browser
 
@@ -43,7 +45,7 @@ def text_of(html: str) -> str:
 def test_what_is_told(html: str) -> None:
     text = text_of(html)
     assert (
-        "8 machines: in 6 something is missing from the model; 1 of 6 recorded over time changed; 1 data set failed."
+        "7 machines: in 6 something is missing from the model; 1 of 6 recorded over time changed; 1 data set failed."
         in text
     )
     assert "Stopped: 3 data sets not begun or not finished. The same command goes on with them." in text
@@ -77,6 +79,26 @@ def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     told = text_of(render_fleet([unfinished], (), ()))
     assert "0.50" not in told and "0.00074" not in told and "under 0.1" in told
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
+
+
+def test_an_unknown_effect_is_not_something_without_a_name(coulomb: Callable[..., Row]) -> None:
+    """Seen: "something without a name" of two verdicts with a curve."""
+    curve = replace(coulomb("one", None), answer="unknown", effect="an unknown effect at rotor", probability=0.97)
+    rows = [curve, replace(coulomb("two", None), answer="unknown")]
+    assert counted(rows) == [("unknown", "an unknown effect", 1), ("missing", "something without a name", 1)]
+    assert FleetResult(tuple(rows)).sentence == "2 data sets: 1 an unknown effect, 1 something without a name."
+    html = render_fleet(rows, (), ())
+    assert '<option value="missing">' in html and 'data-answer="missing"' in html and 'data-answer="unknown"' in html
+
+
+def test_too_few_recordings_are_no_test_of_change(coulomb: Callable[..., Row]) -> None:
+    """Seen: "no change that is more than chance" of two verdicts of one date, over an axis of a minute."""
+    rows = [replace(coulomb("pump", value, month=1), dataset=f"{value}") for value in (0.3, 0.5)]
+    (history,) = histories(rows)
+    told = text_of(render_fleet(rows, (), (history,)))
+    assert not history.tested and "recorded over time changed" not in told and "more than chance." not in told
+    assert "2 dated verdicts are too few to tell a change from chance; 6 are needed." in told
+    assert all(re.match(r"\d{4}-", tick.label) for tick in history_chart(history).columns[0][0].x.ticks())
 
 
 @needs_browser

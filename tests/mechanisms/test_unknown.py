@@ -29,6 +29,9 @@ def test_centres_span_the_range_and_do_not_move(around) -> None:
     np.testing.assert_allclose(np.diff(centres), np.diff(centres)[0])
     fixed = {p.name: p for p in curve.parameters(around) if p.fixed}
     assert set(fixed) == {"first", "spacing"}
+    heights = [p.description for p in curve.parameters(around) if not p.fixed]
+    assert heights[1] == f"height at deflection = {centres[1]:g} rad"  # seen: "height at 53.6364"
+    assert fixed["first"].description == "first centre over deflection"
     assert fixed["first"].unit == "rad" and fixed["spacing"].value == pytest.approx(0.11 / 2)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from greybox_torch.diagnosis.settings.fields import number, ratio, share
+from greybox_torch.diagnosis.settings.fields import count, number, ratio, share
 
 NOISE_MULTIPLE = "times the noise (root mean square)"
 
@@ -13,6 +13,13 @@ NOISE_MULTIPLE = "times the noise (root mean square)"
 class SearchingAgainSettings:
     """What held-out experiments show that those to choose with do not."""
 
+    most_promoted: int = count(
+        100,
+        "Validation experiments that may be taken to choose with besides those of estimation, at most; 0 keeps all of them for judging.",
+        unit="experiments",
+        chosen_by="no limit: one is taken only while another is left to judge",
+        least=0,
+    )
     promote_error: float = ratio(
         1.5, "Error from which a validation experiment shows what nothing was found of.", unit=NOISE_MULTIPLE
     )

@@ -17,6 +17,9 @@ FEEDBACK = (
     "bend the estimate, and nothing is drawn beyond the band that is excited from outside."
 )
 
+EDGE = 1.02
+"""Factor by which the axis goes beyond the first and last frequency, whose dots would be cut in half."""
+
 LEGEND = (
     Key("dots", "measured, with its 95 % region"),
     Key("before", "before: the model re-estimated as it was"),
@@ -49,12 +52,11 @@ class Curves:
 
 def bode(found: Curves, one: InputTrace, trace: Trace, experiments: int, *, feedback: bool) -> Chart:
     """The chart of one input and one output, estimated from so many experiments; ``feedback``: those were recorded under it."""
-    unit = f"{_factor(trace.unit)}/{_factor(one.unit)}" if trace.unit and one.unit else ""
-    x = Scale(float(found.frequency[0]), float(found.frequency[-1]), logarithmic=True)
+    x = Scale(float(found.frequency[0]) / EDGE, float(found.frequency[-1]) * EDGE, logarithmic=True)
     way = f"{text.words(one.input)} to {text.words(trace.output)}"
     columns = []
     for curves, title, axis, shift in (
-        (found, f"From {way}", text.axis("amplitude", unit), "phase [°]"),
+        (found, f"From {way}", text.axis("amplitude", _unit(one.unit, trace.unit)), "phase [°]"),
         (found.relative, "Relative to the model before", "amplitude ratio", "phase difference [°]"),
     ):
         columns.append((_amplitude(x, curves, title, axis, way), _phase(x, curves, shift, way)))
@@ -65,6 +67,13 @@ def bode(found: Curves, one: InputTrace, trace: Trace, experiments: int, *, feed
         + (FEEDBACK if feedback else "")
     )
     return Chart(tuple(columns), caption, LEGEND)
+
+
+def _unit(of_input: str, of_output: str) -> str:
+    """The unit of a gain; "" where one of the two is not known."""
+    if of_input == "1":
+        return of_output
+    return f"{_factor(of_output)}/{_factor(of_input)}" if of_output and of_input else ""
 
 
 def _factor(unit: str) -> str:

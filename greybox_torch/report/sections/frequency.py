@@ -21,6 +21,8 @@ from greybox_torch.report.sections.traces import validation_traces
 MOST_PAIRS = 2
 """Pairs of an input and an output that are drawn for one effect."""
 
+APART = 4.0
+"""Median distances of clear frequencies from which a lone one at an end is left out: it may be clear by chance, and no band joins it."""
 FEWEST = 8
 """Frequencies at least at which a response has to stand out of its uncertainty to be drawn."""
 
@@ -176,7 +178,15 @@ def _clear(frequency: np.ndarray, gains: np.ndarray, radius: np.ndarray) -> Curv
     clear = np.isfinite(radius) & (amplitude > 0) & (radius < CERTAIN * amplitude) & (np.abs(gains[1:]) > 0).all(axis=0)
     if clear.sum() < FEWEST:
         return None
-    first, last = np.flatnonzero(clear)[[0, -1]]
-    part = slice(first, last + 1)
+    kept = _together(np.flatnonzero(clear))
+    part = slice(kept[0], kept[-1] + 1)
     measured, before, after = np.where(clear, gains, np.nan)[:, part]
     return Curves(frequency[part], measured, before, after, np.where(clear, radius, np.nan)[part])
+
+
+def _together(places: np.ndarray) -> np.ndarray:
+    """The places (K,) of clear frequencies, rising, without a last or first one that stands far from all others."""
+    far = APART * np.median(np.diff(places))
+    if places[-1] - places[-2] > far:
+        places = places[:-1]
+    return places[1:] if places[1] - places[0] > far else places

@@ -40,6 +40,8 @@ def test_what_only_other_experiments_show_is_found_with_one_of_them(drag_at_spee
         f"{taken} no longer counts as validation: it was taken to choose with as well (the evidence says why).",
     )
     assert [r.role for r in data.recordings] == ["estimation", "validation", "validation"]
+    kept = diagnose(data, motor, settings=DiagnosisSettings(most_promoted=0)).verdict
+    assert kept.no_longer_validation == () and not any("to choose with" in line for line in kept.evidence)
 
 
 @pytest.mark.parametrize(("levels", "drag"), [((SLOW, FAST), 0.01), ((SLOW, FAST, FAST), 0.0)])

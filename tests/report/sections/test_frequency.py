@@ -15,7 +15,8 @@ from greybox_torch.estimate.excitation import excited_band
 from greybox_torch.mechanisms.library import LIBRARY
 from greybox_torch.report.about import About
 from greybox_torch.report.page import render_page
-from greybox_torch.report.sections.frequency import Responses, responses
+from greybox_torch.report.sections.bode import _unit
+from greybox_torch.report.sections.frequency import Responses, _clear, responses
 from tests.report.conftest import BACKLASH, verdict_of
 
 STEP = 0.001
@@ -132,3 +133,17 @@ def test_laws_that_are_linear() -> None:
     linear = {name for name, law in LIBRARY.items() if law.linear}
     shifts = {name for name, law in LIBRARY.items() if law.nature == "a time shift"}
     assert linear == shifts | {"input_gain", "sensor_gain", "additional_mode"}
+
+
+def test_a_lone_frequency_beyond_the_band_is_left_out() -> None:
+    """Seen: dots at the border of the chart, beyond the end of lines and region."""
+    gains = np.ones((3, 40), dtype=complex)
+    radius = np.where((np.arange(40) < 12) | (np.arange(40) == 30), 0.1, np.inf)
+    found = _clear(1.0 + np.arange(40), gains, radius)
+    assert found is not None and found.frequency[-1] == 12.0
+    sparse = _clear(1.0 + np.arange(40), gains, np.where(np.arange(40) % 4 == 0, 0.1, np.inf))
+    assert sparse is not None and sparse.frequency[-1] == 37.0
+
+
+def test_the_unit_of_a_gain_by_a_number_is_that_of_the_output() -> None:
+    assert [_unit("1", "m/s^2"), _unit("V", "m"), _unit("", "m")] == ["m/s^2", "m/V", ""]

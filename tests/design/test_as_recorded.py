@@ -1,0 +1,71 @@
+"""Inputs that nobody sets are as they were recorded."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+from greybox_torch.errors import UserError
+from greybox_torch.experiment_design.approach import begun_there
+from greybox_torch.experiment_design.as_recorded import as_recorded, continued
+from greybox_torch.experiment_design.limits import Range, limits_of
+
+TIME: np.ndarray = 0.01 * np.arange(300)
+
+
+@pytest.fixture
+def zone(data_set):
+    """A heater that is switched, and weather: a temperature, and a sun that is constant at night."""
+    switched = np.repeat([0.0, 4.0, 0.0, 2.0, 4.0, 0.0], 50)
+    own = {"heater": switched, "outside": np.sin(TIME), "sun": np.maximum(np.sin(6 * TIME), 0.0)}
+    return data_set({"heater": "W", "outside": "K", "sun": "W"}, [own] * 2)
+
+
+def test_what_was_never_set_in_steps_is_kept_where_other_inputs_were(zone) -> None:
+    """Seen: an outside temperature that was to follow a triangle wave."""
+    names = ["heater", "outside", "sun"]
+    assert as_recorded(zone, names, {}) == ("outside", "sun")
+    assert as_recorded(zone, names, {"sun": {"upper": 1.0}, "outside": {"rate": 1.0}}) == ("outside",)
+    assert as_recorded(zone, names, {"heater": "recorded"}) == ("heater",)
+    assert as_recorded(zone, ["outside", "sun"], {}) == ()  # nothing shows which of them is set
+
+
+def test_a_trace_is_continued_without_a_jump() -> None:
+    assert continued(np.array([0.0, 1.0, 2.0]), 8).tolist() == [0, 1, 2, 1, 0, 1, 2, 1]
+    assert continued(np.array([3.0]), 2).tolist() == [3.0, 3.0]
+
+
+def test_an_input_as_recorded(undecided) -> None:
+    found = gt.design(undecided, seconds=4.0, limits={"voltage": "recorded"})
+    recorded = undecided.data.recordings[0].signals["voltage"]
+    assert found.limits.designed == [] and len(recorded) == 300
+    np.testing.assert_array_equal(found.inputs["voltage"][:300], recorded)
+    assert (found.inputs["voltage"][300:] == recorded[-2:-102:-1]).all()
+    assert found.content(undecided.data.path)["inputs"] == {"voltage": {"kind": "as recorded", "recording": "steps"}}
+    notes = " ".join(found.notes)
+    assert (
+        "Kept as in steps, as asked for: voltage. That is what the prediction counts on (beyond its end, backwards)"
+        in notes
+    )
+    unasked = replace(found, limits=replace(found.limits, not_in_steps=("voltage",)))
+    assert any("Kept as in steps: voltage, never set in steps, unlike other inputs" in line for line in unasked.notes)
+
+
+def test_an_output_is_never_as_recorded(undecided) -> None:
+    with pytest.raises(UserError, match=r'speed: found "recorded"; expected \{ lower .* or some of these$'):
+        gt.design(undecided, limits={"speed": "recorded"})
+
+
+def test_a_trace_takes_the_place_of_a_command(undecided) -> None:
+    limits = limits_of(undecided.data, undecided.model.plain, {"voltage": "recorded"}, "[limits]")
+    assert (begun_there(np.zeros((1, 300)), TIME, limits)[0] == undecided.data.recordings[0].signals["voltage"]).all()
+
+
+def test_a_limit_that_keeps_an_input_small_is_told(undecided) -> None:
+    found = gt.design(undecided, seconds=2.0, limits={"voltage": {"lower": -40.0, "upper": 40.0}})
+    assert any(line.startswith("Small is voltage (") and "as speed is not to pass" in line for line in found.notes)
+    roomy = replace(found, limits=replace(found.limits, outputs={"speed": Range(-1e6, 1e6)}))
+    assert not any(line.startswith("Small is") for line in roomy.notes)
