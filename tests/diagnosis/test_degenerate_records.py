@@ -47,7 +47,7 @@ def test_exact_standstill(rotor: GreyBoxModel) -> None:
     """Seen: an error of "inf times the noise" where every sample is zero."""
     result = said(rotor, voltage=np.zeros(LENGTH), speed=np.zeros(LENGTH))
     assert not result["mismatch"] and result["left"]["times_noise"] is None
-    assert "how much of its error is noise does not show" in result["left"]["sentence"]
+    assert "how much of its error is noise is not known" in result["left"]["sentence"]
 
 
 def test_dead_sensor_of_a_machine_that_is_driven(rotor: GreyBoxModel) -> None:
