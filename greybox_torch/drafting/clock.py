@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.gaps import Gap, longest_gap
+from greybox_torch.data.readers.time_stamps import UNDERSTOOD
 from greybox_torch.data.steps import EVEN, even_step, unevenness
 from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.drafting.recorded import Recorded
@@ -76,7 +77,17 @@ def _without_date(file: Recorded) -> Clock:
             return Clock(sample_time=value, remark=f"{name} = {value:g} in {file.path.name}")
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
-    return _broken(file) or Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+    return _broken(file) or Clock(
+        remark=f"{_not_read(file)}no column rises from sample to sample, and no number is called Ts, dt or fs"
+    )
+
+
+def _not_read(file: Recorded) -> str:
+    """Of a column of dates in another form than those that are understood, to go on with; else ""."""
+    for name, fault in file.faults.items():
+        if name not in file.columns and UNDERSTOOD in fault:
+            return f'column "{name}", {fault}; '
+    return ""
 
 
 def _broken(file: Recorded) -> Clock | None:
