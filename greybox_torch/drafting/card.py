@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
+from greybox_torch.data.summer_time import instead_of_summer_time
 from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.further_runs import of_further_runs
@@ -184,6 +185,11 @@ def _gap(gap: Gap | None, rows: tuple[int, int]) -> list[str]:
     """What to do about a gap that lies in an experiment with ``rows``."""
     if gap is None or not rows[0] <= gap.after < rows[1] - 1:
         return []
+    if gap.of_summer_time:
+        return [
+            f"# {gap.in_brief}: as where local time is set to summer time.",
+            f"# Then nothing is missing: {instead_of_summer_time(gap.step)}.",
+        ]
     return [
         f"# {gap.in_brief}: a simulation across it would hold the last input.",
         f"# Write {pieces_around((gap.after + 1, gap.after + 1), rows)}.",

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.gaps import Gap, longest_gap
 from greybox_torch.data.readers.time_stamps import UNDERSTOOD
 from greybox_torch.data.steps import EVEN, even_step, unevenness
+from greybox_torch.data.summer_time import clock_set_back, instead_of_summer_time
 from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.drafting.recorded import Recorded
 
@@ -103,9 +104,18 @@ def _broken(file: Recorded) -> Clock | None:
             return Clock(remark=f"{told}, and no number is called Ts, dt or fs")
         told = f'column "{name}", {file.faults[name]}' if name in file.faults else told
         unit, _ = _unit(name, values[np.isfinite(values)], file.units.get(name, ""))
+        told += _set_back(values, int(falls[0])) if name in file.stamps else ""
         broken = f"{told}; to be mended in {file.path.name}"
         return Clock(name, unit or "s", remark=broken, broken=broken)
     return None
+
+
+def _set_back(values: NDArray[np.float64], fall: int) -> str:
+    """Of stamps (N,) that fall behind a sample as local time does in autumn, to go on with; else ""."""
+    step = float(np.nanmedian(np.diff(values)))
+    if not clock_set_back(values[fall], values[fall + 1], step):
+        return ""
+    return f", as where local time is set back from summer time: expected {instead_of_summer_time(step)}"
 
 
 def _comes_first(column: str, file: Recorded) -> bool:
@@ -118,9 +128,9 @@ def named_like_a_clock(column: str) -> bool:
     return bool(_TIME.search(column))
 
 
-def is_clock(values: NDArray[np.float64]) -> bool:
-    """Whether values (N,) rise from sample to sample, in steps that hardly differ."""
-    return _rises(values) and unevenness(values) < _EVEN_ENOUGH
+def is_clock(values: NDArray[np.float64], *, gaps: bool = True) -> bool:
+    """Whether values (N,) rise from sample to sample, in steps that hardly differ; without ``gaps``, but for those that are gaps."""
+    return _rises(values) and unevenness(values, gaps=gaps) < _EVEN_ENOUGH
 
 
 def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
