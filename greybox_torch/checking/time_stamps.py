@@ -123,8 +123,7 @@ def _unit(recording: Recording, first: Recording) -> OddTime:
     return OddTime(
         f'[[experiment]] "{recording.name}": its sample time is {recording.sample_time:.4g} s, {ratio:.0f} times that of '
         f'"{first.name}" ({first.sample_time:.4g} s), as if one file counted in seconds and the other in milliseconds',
-        "one unit of time in all files of a card: convert that file's time stamps, or give it a card of its own with time = { column = "
-        '"…", unit = "ms" }',
+        'columns = { time = { column = "…", unit = "ms" } } in that experiment',
     )
 
 

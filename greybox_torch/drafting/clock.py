@@ -47,7 +47,7 @@ class Clock:
 
     ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
     ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty. ``date`` is
-    the column of the dates of times of day, else empty.
+    the column of the dates of times of day, else empty. ``said`` is whether anything says the unit.
     """
 
     column: str | None = None
@@ -58,6 +58,7 @@ class Clock:
     gap: Gap | None = None
     broken: str = ""
     date: str = ""
+    said: bool = True
 
 
 def clock_of(file: Recorded) -> Clock:
@@ -140,7 +141,7 @@ def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
     seconds = values * SECONDS.get(known, 1.0)
     uneven = even_step(seconds) if unevenness(values, gaps=False) > EVEN else ""
     remark = f"{why}{_step(step, values, known or 's')}{doubt}"
-    return Clock(column, known or "s", remark=remark, uneven=uneven, gap=longest_gap(seconds))
+    return Clock(column, known or "s", remark=remark, uneven=uneven, gap=longest_gap(seconds), said=bool(known))
 
 
 def _unit(column: str, values: NDArray[np.float64], unit: str) -> tuple[str, str]:
