@@ -97,7 +97,7 @@ def test_a_quarter_that_was_held_out_by_default_is_as_long_as_it_is() -> None:
 def test_estimation_experiments_that_are_short_beside_the_machine() -> None:
     """Seen: an hour of a wall of two days passed every check, and C came out ten thousand times too large."""
     *_, told = short_records(data(24.0, 24.0), Plate())
-    assert "lasts 22 s, 4.4 % of the slowest time constant, 500 s by the model's values" in told.found
+    assert "lasts 24 s, 4.8 % of the slowest time constant, 500 s by the model's values" in told.found
     assert not list(short_records(data(40.0, 40.0), Plate()))
 
 
