@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -121,6 +121,7 @@ def not_finite_at_start(
         + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
         source,
         line,
+        [name for name in divisors if name in {p.name for p in model.declared_parameters}],
     )
 
 
@@ -137,9 +138,11 @@ def _zero(model: GreyBoxModel, start: Points) -> dict[str, Points]:
     return found
 
 
-def _finding(found: str, source: Source, line: int | None) -> Finding:
+def _finding(found: str, source: Source, line: int | None, zero: Sequence[str] = ()) -> Finding:
+    """``zero`` are parameters that divide and are 0, with which no simulation gets anywhere."""
     first = next((m.tree.lineno for m in source.methods), source.line)
-    return Finding("warning", "numbers", found, _WRITE, source.file, line or first)
+    write = f"a value other than 0 for {' and '.join(zero)}, on the card or in the model" if zero else _WRITE
+    return Finding("error" if zero else "warning", "numbers", found, write, source.file, line or first)
 
 
 def _origin(model: GreyBoxModel, point: Points, file: Path | None) -> tuple[bool, int | None]:

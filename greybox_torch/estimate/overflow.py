@@ -92,11 +92,18 @@ def _countable(values: np.ndarray) -> np.ndarray:
 def suggestions(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...]:
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
+    A parameter of 0, which no factor changes, is tried at the model's own value, or 1.
     Tried on the free parameters, or on all where none is free; empty where no single one helps.
     """
     tried = np.flatnonzero(problem.free) if problem.free.any() else np.arange(len(problem.names))
-    for factor in FACTORS:
-        candidates = [(int(k), factor * float(problem.values[k])) for k in tried if problem.values[k] != 0.0]
+    declared = problem.model.values()
+    zeros = [(int(k), declared[problem.names[k]] or 1.0) for k in tried if problem.values[k] == 0.0]
+    for factor in (None, *FACTORS):
+        candidates = (
+            zeros
+            if factor is None
+            else [(int(k), factor * float(problem.values[k])) for k in tried if problem.values[k] != 0.0]
+        )
         rows = [_changed(problem, k, value) for k, value in candidates]
         allowed = [i for i, row in enumerate(rows) if _allowed(problem, row)]
         finite = _finite(problem, simulator, np.array([rows[i] for i in allowed])) if allowed else []
