@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -116,13 +116,17 @@ def not_finite_at_start(
     if not standing:  # the line divides by what other lines made of them
         standing = [name for name, other in zero.items() if not _origin(model, other, source.file)[0]]
     of = f' of "{name}"' if name else " (states at their start values, measured ones and inputs at zero)"
-    yield _finding(
+    told = _finding(
         f"the equations give no number at the start{of}"
         + (f", where {' and '.join(f'{name} = 0' for name in divisors or standing)}" if standing else ""),
         source,
         line,
-        [name for name in divisors if name in {p.name for p in model.declared_parameters}],
     )
+    zeros = [name for name in divisors if name in {p.name for p in model.declared_parameters}]
+    if zeros:  # no simulation gets anywhere; without recordings a card may still give other values
+        write = f"a value other than 0 for {' and '.join(zeros)}, on the card or in the model"
+        told = replace(told, level="warning" if begun is None else "error", write=write)
+    yield told
 
 
 def _zero(model: GreyBoxModel, start: Points) -> dict[str, Points]:
@@ -138,11 +142,9 @@ def _zero(model: GreyBoxModel, start: Points) -> dict[str, Points]:
     return found
 
 
-def _finding(found: str, source: Source, line: int | None, zero: Sequence[str] = ()) -> Finding:
-    """``zero`` are parameters that divide and are 0, with which no simulation gets anywhere."""
+def _finding(found: str, source: Source, line: int | None) -> Finding:
     first = next((m.tree.lineno for m in source.methods), source.line)
-    write = f"a value other than 0 for {' and '.join(zero)}, on the card or in the model" if zero else _WRITE
-    return Finding("error" if zero else "warning", "numbers", found, write, source.file, line or first)
+    return Finding("warning", "numbers", found, _WRITE, source.file, line or first)
 
 
 def _origin(model: GreyBoxModel, point: Points, file: Path | None) -> tuple[bool, int | None]:

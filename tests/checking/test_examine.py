@@ -144,7 +144,7 @@ FAULTS = {
         "a denominator", "/ x.speed",
     ),
     "parameter of zero that is divided by": (
-        (J, J.replace("0.01", "0.0").replace(", lower=0.0", "")), "warning", "at the start", "a denominator", "return {",
+        (J, J.replace("0.01", "0.0").replace(", lower=0.0", "")), "warning", "at the start", "a value other than 0 for J", "return {",
     ),
     "negative inertia": (
         (J, J.replace("0.01", "-0.01").replace(", lower=0.0", "")),
