@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from documentation.tables import table
 from greybox_torch.data.card import Card, InitialEntry, ParameterEntry
-from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, TimeEntry
+from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, OwnColumn, TimeEntry
 from greybox_torch.data.card_controller import LoopEntry
 
 TABLES: tuple[tuple[str, type[Entry]], ...] = (
@@ -15,6 +15,7 @@ TABLES: tuple[tuple[str, type[Entry]], ...] = (
     ("`time = { … }`", TimeEntry),
     ("`[channels]`: `NAME = { … }`", ChannelEntry),
     ("`[[experiment]]`", ExperimentEntry),
+    ("`columns = { NAME = { … } }` of an experiment", OwnColumn),
     ("`[controller]`: `INPUT = { … }`", LoopEntry),
     ("`[model.parameters]`: `NAME = { … }`", ParameterEntry),
     ("`[model.initial]`: `STATE = { … }`", InitialEntry),

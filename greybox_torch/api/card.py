@@ -98,7 +98,7 @@ class CardResult(DraftedFile):
             for run in self.draft.runs
             if all(column in run.whole.columns for column in found.values())
         ]
-        along = "sample" if self.draft.clock.sample_time is None else "time [s]"
+        along = "sample" if self.draft.clock.sample_time is None else ""
         return plot_channels(DataSet(recordings, name=f"For {self.path.name}", held_out_by_default=False), along)
 
     def _repr_html_(self) -> str:

@@ -20,7 +20,7 @@ from greybox_torch.checking.not_finite import not_finite_at_start, not_finite_wh
 from greybox_torch.checking.points import Points, start_of
 from greybox_torch.checking.recorded_points import recorded_points
 from greybox_torch.checking.source import source_of
-from greybox_torch.checking.start_states import unmeasured_starts
+from greybox_torch.checking.start_states import borrowed_starts, unmeasured_starts
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
 from greybox_torch.errors import ArgumentError, Kind, UserError
@@ -66,6 +66,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
                 None if data is None else {name for name, entry in data.initial.items() if entry.value is not None}
             )
             findings += unmeasured_starts(examined.model, source_of(examined.made), on_card)
+            findings += borrowed_starts(examined.model, source_of(examined.made), on_card)
     if data is not None:
         usable = None if any(f.level == "error" for f in findings) else examined.model
         if usable is not None:

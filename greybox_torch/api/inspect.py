@@ -21,6 +21,7 @@ from greybox_torch.keywords import names_checked
 from greybox_torch.name_lists import brief
 from greybox_torch.report import notebook
 from greybox_torch.report.tables import print_table
+from greybox_torch.report.time_axis import time_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -180,4 +181,7 @@ def _extent(recording: Recording) -> str:
     """
     files = [] if recording.source is None else [recording.source.name, *(file.name for file in recording.further)]
     file = f"{brief(files)}, rows = {list(recording.rows)}, " if files else ""
-    return f"{file}{recording.time[-1] - recording.time[0]:.6g} s"
+    seconds = float(recording.time[-1] - recording.time[0])
+    unit = time_unit(seconds)
+    longer = f" ({seconds / unit.seconds:.3g} {unit.symbol})" if unit.seconds > 1.0 else ""
+    return f"{file}{seconds:.6g} s{longer}"

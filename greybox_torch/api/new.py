@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,7 +70,7 @@ def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = No
         path: of the file; by default its name with .py, in the current folder.
 
     Raises:
-        UserError: a name that Python cannot use, or an unknown pattern.
+        UserError: a name that Python cannot use or has already, or an unknown pattern.
 
     Examples:
         >>> new("my_tank", like="tank").name
@@ -81,4 +82,17 @@ def new(name: str, *, like: str = "motor", path: str | PathLike[str] | None = No
     place = Path(path) if path is not None else Path(f"{name.removesuffix('.py')}.py")
     if place.suffix != ".py":
         raise ArgumentError("path", str(place), "expected a file that ends in .py", option="out")
+    if taken := _taken(place):
+        raise ArgumentError("name", place.stem, f"{taken}; expected another name, such as my_{place.stem}")
     return NewModel(made, like, model_text(made, like, place.name), place)
+
+
+def _taken(place: Path) -> str:
+    """What else is called as the file, which Python would then take for it in that folder; "" where nothing is."""
+    name = place.stem
+    try:
+        found = find_spec(name) if name.isidentifier() else None
+    except (ImportError, ValueError):
+        return ""
+    own = found is not None and found.origin is not None and Path(found.origin).parent == place.absolute().parent
+    return f"is the name of an installed module, which {place.name} would hide" if found is not None and not own else ""

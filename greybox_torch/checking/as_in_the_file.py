@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import TIME, read_card
+from greybox_torch.data.card import read_card
 from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.holding_out import HELD_OUT
@@ -51,11 +51,12 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     said = {f"{entry.name}{end}": entry for entry in card.experiment for end in ("", HELD_OUT)}.get(recording.name)
     if said is None or card.decimate or card.resample or card.channels[name].derivative:
         return None
+    card = card.of(said)
     formula = card.formulas(said).get(name)
     if formula is None or len(formula.columns) != 1:
         return None
     columns = formula.columns
-    clock = said.columns.get(TIME, card.time.column) if card.time else None
+    clock = card.time.column if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
     files = [data.path.parent / file for file in said.file]
     dated = with_dates(over_files(files, said.join, read_table), card.time, clock)

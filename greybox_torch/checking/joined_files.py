@@ -94,7 +94,9 @@ def joined_files(data: DataSet) -> dict[str, JoinedFiles]:
 def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Recording, read: Read) -> JoinedFiles:
     if data.path is None or card.time is None or set(card.channels) != set(recording.signals):
         raise KeyError(TIME)
-    clock = entry.columns.get(TIME, card.time.column)
+    card = card.of(entry)
+    assert card.time is not None
+    clock = card.time.column
     formulas = card.formulas(entry)
     columns = {name: formula.columns for name, formula in formulas.items()}
     needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])

@@ -35,8 +35,9 @@ def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
     """Of every two channels that are the same column, or computed from columns in the same way; none where data are from memory."""
     if data.path is None or not data.path.is_file():
         return
-    card, told = read_card(data.path), set[tuple[str, str]]()
-    for experiment in card.experiment:
+    whole, told = read_card(data.path), set[tuple[str, str]]()
+    for experiment in whole.experiment:
+        card = whole.of(experiment)
         formulas = card.formulas(experiment)
         for one, other in combinations(formulas, 2):
             column = _shared(card, formulas, one, other)

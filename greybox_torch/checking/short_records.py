@@ -1,4 +1,4 @@
-"""Validation experiments that are too short to judge a model by."""
+"""Experiments that are too short: to estimate a model from, or to judge it by."""
 
 from __future__ import annotations
 
@@ -25,8 +25,11 @@ class ShortRecords(InASentence):
 
 
 def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords]:
-    """Whether the validation experiments are short beside those of estimation, or beside the model's time constants there."""
+    """Whether the estimation experiments are short beside the model's time constants there or have few samples for what is unknown, and
+    whether the validation experiments are short beside either.
+    """
     from greybox_torch.estimate.problem import make_problem  # these load torch
+    from greybox_torch.estimate.short_estimation import few_samples, short_estimation
     from greybox_torch.estimate.short_validation import short_validation
     from greybox_torch.estimate.slowest_time_constant import slowest_time_constant
 
@@ -34,6 +37,13 @@ def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords]:
         problem = make_problem(data, model, data.estimation() or data.recordings)
     except UserError:
         return  # told elsewhere
-    told = short_validation(data, slowest_time_constant(model.plain, problem))
+    constant = slowest_time_constant(model.plain, problem)
+    if few := few_samples(problem):
+        yield ShortRecords(f"[[experiment]]: {few}", "longer experiments, or values that are known, with fixed = true")
+    if short := short_estimation(data, constant):
+        yield ShortRecords(
+            f"[[experiment]]: {short}", "experiments over that time constant and more; or its parameters fixed"
+        )
+    told = short_validation(data, constant)
     if told is not None:
         yield ShortRecords(f"[[experiment]] role: {told}")

@@ -15,6 +15,7 @@ from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces
 from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.steps import even_step
+from greybox_torch.data.summer_time import instead_of_summer_time
 from greybox_torch.name_lists import listed
 
 _SHOWN = 3  # places at which samples were lost
@@ -61,6 +62,12 @@ def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
     """``rows`` and what is written are rows of the file."""
     start, stop = rows
     split = recording.rows[0] + gap.after + 1
+    if gap.of_summer_time:
+        return OddTime(
+            f'[[experiment]] "{recording.name}": {gap}, as where local time is set to summer time; then nothing is missing',
+            f"{instead_of_summer_time(gap.step)}; if samples are missing, two experiments: rows = [{start}, {split}] and "
+            f"rows = [{split}, {stop}]",
+        )
     return OddTime(
         f'[[experiment]] "{recording.name}": {gap}; a simulation across it would hold the last input for all that time',
         f"two experiments with the same file, one before the gap and one after it: rows = [{start}, {split}] and rows = [{split}, {stop}]",
@@ -116,8 +123,7 @@ def _unit(recording: Recording, first: Recording) -> OddTime:
     return OddTime(
         f'[[experiment]] "{recording.name}": its sample time is {recording.sample_time:.4g} s, {ratio:.0f} times that of '
         f'"{first.name}" ({first.sample_time:.4g} s), as if one file counted in seconds and the other in milliseconds',
-        "one unit of time in all files of a card: convert that file's time stamps, or give it a card of its own with time = { column = "
-        '"…", unit = "ms" }',
+        'columns = { time = { column = "…", unit = "ms" } } in that experiment',
     )
 
 

@@ -28,6 +28,7 @@ from greybox_torch.data.card_constants import check_constants
 from greybox_torch.data.card_controller import LoopEntry, check_loops
 from greybox_torch.data.card_errors import describe
 from greybox_torch.data.expression import Expression
+from greybox_torch.data.own_columns import own_channels, own_time, wrong_in
 from greybox_torch.data.readers import READERS
 from greybox_torch.errors import UserError, did_you_mean, quoted
 from greybox_torch.name_lists import brief
@@ -171,6 +172,8 @@ class Card(Entry):
                     raise ValueError(
                         f'{place}: no channel is named "{key}"{did_you_mean(key, known)}; expected {", ".join(known)}'
                     )
+                if wrong := wrong_in(key, experiment.columns[key], self.channels.get(key)):
+                    raise ValueError(f"{place}, {key}: {wrong}")
         return self
 
     @model_validator(mode="after")
@@ -183,10 +186,15 @@ class Card(Entry):
         check_loops(self.controller, self.channels, self.hold)
         return self
 
+    def of(self, experiment: ExperimentEntry) -> Self:
+        """The card as it is for one experiment, with the columns and units that are its own."""
+        time = None if self.time is None else own_time(self.time, experiment.columns.get(TIME))
+        return self.model_copy(update={"time": time, "channels": own_channels(self.channels, experiment.columns)})
+
     def formulas(self, experiment: ExperimentEntry) -> dict[str, Expression]:
         """By channel, how it comes from columns in an experiment: without those that are constants there."""
-        own = {name: entry for name, entry in self.channels.items() if name not in experiment.constants}
-        return {name: entry.expression(experiment.columns.get(name)) for name, entry in own.items()}
+        own = self.of(experiment).channels
+        return {name: entry.expression() for name, entry in own.items() if name not in experiment.constants}
 
 
 def _what_else(path: Path) -> str:

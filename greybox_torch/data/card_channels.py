@@ -128,11 +128,9 @@ class ChannelEntry(Entry):
     def _missing(self) -> list[float | str]:
         return self.missing if isinstance(self.missing, list) else [] if self.missing is None else [self.missing]
 
-    def expression(self, column: str | None) -> Expression:
-        """How the channel comes from columns; `column` stands in where an experiment names another."""
-        if column is None and self.expr is not None:
-            return parse_expression(self.expr)
-        return Expression.of_column(str(column or self.column))
+    def expression(self) -> Expression:
+        """How the channel comes from columns."""
+        return parse_expression(self.expr) if self.expr is not None else Expression.of_column(str(self.column))
 
 
 class TimeEntry(Entry):
@@ -150,10 +148,34 @@ class TimeEntry(Entry):
         return {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "ns": 1e-9, "min": 60.0, "h": 3600.0}[self.unit]
 
 
+class OwnColumn(Entry):
+    """A column of one experiment alone. Where its file is in other units than those of the card's other files, `unit` is that of time
+    stamps, `file_unit` or `scale` how a channel is converted; without them it is as the card says.
+    """
+
+    column: Text
+    unit: Text | None = None
+    date: Text | None = None
+    file_unit: Text | None = None
+    scale: Finite | None = None
+
+    _position = field_validator("column", "date", mode="before")(_column)
+
+    @model_validator(mode="after")
+    def _one_conversion(self) -> Self:
+        if self.file_unit is not None and self.scale is not None:
+            raise ValueError('both "scale" and "file_unit" are given; expected one of them')
+        if self.scale == 0.0:
+            raise ValueError("a scale of zero would erase the channel; expected a number other than zero")
+        return self
+
+
 class ExperimentEntry(Entry):
     """One recording: its file or files, its role, and optionally `rows` ([start, stop], counted from zero, stop left
     out) and columns of its own.
 
+    Of `columns`, each is a name or position, or a table with the units of this file: `{ column = "t", unit = "ms" }` for `time`,
+    `{ column = "h", file_unit = "cm" }` for a channel.
     `join` says how several files belong together: "concatenate", one after the other, "time", columns matched by their time stamps, or
     "rows", samples of one number side by side; a column by its position is then counted over the columns of all files.
     `constants` are channels that have one value throughout the experiment, in the channel's `unit`: they need no column, and where they
@@ -165,8 +187,15 @@ class ExperimentEntry(Entry):
     join: Literal["concatenate", "time", "rows"] | None = None
     role: Literal["estimation", "validation"] = "estimation"
     rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
-    columns: dict[str, Text] = {}
+    columns: dict[str, OwnColumn] = {}
     constants: dict[str, Finite] = {}
+
+    @field_validator("name")
+    @classmethod
+    def _to_be_read(cls, name: str) -> str:
+        if not name.strip():
+            raise ValueError("found blanks alone, expected a name that can be read in tables and figures")
+        return name
 
     @field_validator("file", mode="before")
     @classmethod
@@ -175,8 +204,10 @@ class ExperimentEntry(Entry):
 
     @field_validator("columns", mode="before")
     @classmethod
-    def _positions(cls, columns: Any) -> Any:
-        return {name: _column(value) for name, value in columns.items()} if isinstance(columns, dict) else columns
+    def _names_or_tables(cls, columns: Any) -> Any:
+        if not isinstance(columns, dict):
+            return columns
+        return {name: own if isinstance(own, dict | OwnColumn) else {"column": own} for name, own in columns.items()}
 
     @model_validator(mode="after")
     def _joined(self) -> Self:

@@ -39,6 +39,7 @@ _EXPECTED_AT = {
     ("rows",): "two whole numbers, [start, stop]",
     ("file",): "the name of a file, or a list of names",
     ("time",): 'the column of time stamps, or { column = "t", unit = "ms" }',
+    ("hold",): '"zoh" (held until the next sample) or "foh" (straight lines between samples)',
     ("column",): "the name of a column, or its position from 1 on",
 }
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.summer_time import clock_set_back, instead_of_summer_time
 from greybox_torch.errors import UserError
 
 FEWEST_SAMPLES = 10
@@ -47,14 +48,17 @@ def check_time(time: NDArray[np.float64], place: Place) -> None:
         later = int(backward[0]) + 1
         raise UserError(
             f"{place(later)}: found {time[later]:.14g} s after {time[later - 1]:.14g} s; "
-            f"expected time stamps that increase from sample to sample{_past_midnight(time, later)}"
+            f"expected time stamps that increase from sample to sample{_begins_anew(time, later)}"
         )
 
 
-def _past_midnight(time: NDArray[np.float64], later: int) -> str:
-    """What to do where a time of day begins anew, to end a message; empty elsewhere."""
+def _begins_anew(time: NDArray[np.float64], later: int) -> str:
+    """What to do where a time of day begins anew, or an hour comes again, to end a message; empty elsewhere."""
     before, after = time[later - 1], time[later]
     steps = np.diff(time)
+    step = float(np.median(steps))
+    if clock_set_back(before, after, step):
+        return f", as where local time is set back from summer time: expected {instead_of_summer_time(step)}"
     if not (0.0 <= after < before <= DAY and before - after > DAY / 2 and (steps > 0.0).any()):
         return ""
     return (

@@ -129,5 +129,6 @@ def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) 
             continue
         raise UserError(
             f'{path}, time: {table.path} has column "{clock}" in "{said}", the card says "{time.unit}"; '
-            f'expected time = {{ column = "{clock}", unit = "{found}" }}'
+            f'expected time = {{ column = "{clock}", unit = "{found}" }}, or, where other files of the card are in "{time.unit}", '
+            f'columns = {{ time = {{ column = "{clock}", unit = "{found}" }} }} in that [[experiment]]'
         )

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import FEWEST_SAMPLES
+from greybox_torch.data.summer_time import clock_set_forward, written_date
 
 SAMPLES_LOST = 5
 """Samples that may be missing one after the other before that is a gap, for which an experiment has to be split."""
@@ -47,6 +48,11 @@ class Gap:
         return f"{self._when} (after sample {self.after}, the first is 0; usual step {self.step:.4g} s){self._others}"
 
     @property
+    def of_summer_time(self) -> bool:
+        """Whether it is the only one and local time was set forward there, so that likely nothing is missing."""
+        return self.count == 1 and clock_set_forward(self.begin, self.end, self.step)
+
+    @property
     def in_brief(self) -> str:
         """For where the place in the file is told already."""
         return f"{self._when}{self._others}"
@@ -54,7 +60,12 @@ class Gap:
     @property
     def _when(self) -> str:
         begin, end = self.begin - self.start, self.end - self.start
-        return f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {begin:.6g} to {end:.6g} s after the start"
+        return f"gap in the time stamps: no sample for {self.seconds:.4g} s, from {begin:.6g} to {end:.6g} s after the start{self._dates}"
+
+    @property
+    def _dates(self) -> str:
+        begin, end = written_date(self.begin), written_date(self.end)
+        return f" ({begin} to {end}; UTC where the stamps have a time zone)" if begin and end else ""
 
     @property
     def _others(self) -> str:

@@ -169,7 +169,7 @@ def _seconds(time: Any, where: str) -> NDArray[np.float64]:
 
 def _of_text(stamps: NDArray, where: str) -> NDArray[np.float64]:
     """Seconds of dates and times as text, read like those of a file: pandas.read_csv leaves them as they are."""
-    reads, found = TimeStamps(), np.empty((2, len(stamps)))
+    reads, found = TimeStamps(text.strip() for text in stamps), np.empty((2, len(stamps)))
     for k, text in enumerate(stamps):
         try:
             found[:, k] = reads.minute_and_seconds(text.strip())

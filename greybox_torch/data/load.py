@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.asked_for import asked_for
-from greybox_torch.data.card import TIME, Card, read_card
+from greybox_torch.data.card import Card, read_card
 from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
 from greybox_torch.data.card_constants import constants_of, told_constants
 from greybox_torch.data.checks import check_finite, check_length, check_time
@@ -45,7 +45,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     card = read_card(path)
     read = cache(read_table)  # experiments are often slices of one file
     return DataSet(
-        [_read_recording(path, card, experiment, read) for experiment in card.experiment],
+        [_read_recording(path, card.of(experiment), experiment, read) for experiment in card.experiment],
         hold=card.hold,
         name=card.name or absolute(path).parent.name or "recordings",
         path=path,
@@ -69,9 +69,10 @@ def _channel(name: str, entry: ChannelEntry) -> Channel:
 
 
 def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: Read) -> Recording:
+    """``card`` as it is for the experiment."""
     place = f'{path}, [[experiment]] "{experiment.name}"'
     files = [path.parent / file for file in experiment.file]
-    clock = None if card.time is None else experiment.columns.get(TIME, card.time.column)
+    clock = None if card.time is None else card.time.column
     formulas = card.formulas(experiment)
     clocks = [column for column in (clock, card.time.date if card.time else None) if column]
     needed = [*(c for formula in formulas.values() for c in formula.columns), *clocks[:1]]

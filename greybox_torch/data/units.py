@@ -7,6 +7,7 @@ import re
 from functools import cache
 from typing import Any
 
+from greybox_torch.data.unit_letters import in_small_letters
 from greybox_torch.errors import UserError, did_you_mean
 
 _PLAIN = re.compile(r"[A-Za-zµμΩ°%/·*^().²³0-9 \-]{1,40}")
@@ -163,7 +164,8 @@ def dimensionality(unit: str) -> dict[str, float]:
     try:
         return {str(name): float(power) for name, power in _registry().Unit(_written(unit)).dimensionality.items()}
     except Exception as error:  # pint's parser raises what its tokenizer does
-        why = ": it begins with a number" if factor_in(unit) else ""
+        small = in_small_letters(unit, lambda text: _registry().Unit(_written(text)))
+        why = ": it begins with a number" if factor_in(unit) else small
         raise ValueError(f'"{unit:.40}" is not a unit{why}') from error
 
 

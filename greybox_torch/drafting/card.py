@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from greybox_torch.data.gaps import Gap, pieces_around
+from greybox_torch.data.summer_time import instead_of_summer_time
 from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
-from greybox_torch.drafting.further_runs import of_further_runs
+from greybox_torch.drafting.further_runs import guessed_units, of_further_runs, own_columns
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
@@ -140,13 +141,7 @@ def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
     lines: list[str] = []
     names = names_of(runs)
     for k, run in enumerate(runs):
-        own = {
-            draft.name: draft.column
-            for draft, first in zip(run.table.channels, runs[0].table.channels, strict=False)
-            if draft.column is not None and draft.column != first.column
-        }
-        if run.clock.column is not None and run.clock.column != runs[0].clock.column:
-            own["time"] = run.clock.column
+        own, guessed = own_columns(run, runs[0]), guessed_units(run, runs[0])
         alone, last, samples = len(runs) == 1, k == len(runs) - 1, run.whole.samples
         if alone and samples >= FEW:
             cut = 3 * samples // 4
@@ -154,18 +149,24 @@ def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
                 ("first part", "estimation", (0, cut)),
                 ("last part", "validation", (cut, samples)),
             ):
-                lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, rows)
+                lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, guessed, rows)
             continue
         role = "validation" if last and not alone else "estimation"
-        lines += _experiment(names[k], run, role, folder, own, None)
+        lines += _experiment(names[k], run, role, folder, own, guessed, None)
     return lines
 
 
 def _experiment(
-    name: str, run: Run, role: str, folder: Path, columns: dict[str, str], rows: tuple[int, int] | None
+    name: str,
+    run: Run,
+    role: str,
+    folder: Path,
+    columns: dict[str, str],
+    guessed: str,
+    rows: tuple[int, int] | None,
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
-    own = ", ".join(f"{toml_key(channel)} = {toml_text(column)}" for channel, column in columns.items())
+    own = ", ".join(f"{toml_key(channel)} = {column}" for channel, column in columns.items())
     files = [toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix()) for file in run.files]
     return [
         *_gap(run.clock.gap, rows or (0, run.whole.samples)),
@@ -175,6 +176,7 @@ def _experiment(
         *([_JOIN] if len(files) > 1 else []),
         f"role = {toml_text(role)}              # {seen}",
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
+        *([f"# {guessed}; please check"] if guessed else []),
         *([f"columns = {{ {own} }}"] if own else []),
         "",
     ]
@@ -184,6 +186,11 @@ def _gap(gap: Gap | None, rows: tuple[int, int]) -> list[str]:
     """What to do about a gap that lies in an experiment with ``rows``."""
     if gap is None or not rows[0] <= gap.after < rows[1] - 1:
         return []
+    if gap.of_summer_time:
+        return [
+            f"# {gap.in_brief}: as where local time is set to summer time.",
+            f"# Then nothing is missing: {instead_of_summer_time(gap.step)}.",
+        ]
     return [
         f"# {gap.in_brief}: a simulation across it would hold the last input.",
         f"# Write {pieces_around((gap.after + 1, gap.after + 1), rows)}.",

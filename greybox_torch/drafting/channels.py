@@ -14,7 +14,7 @@ from greybox_torch.data.understood_units import understood
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
-from greybox_torch.drafting.likened import likened
+from greybox_torch.drafting.likened import likened, of_the_same_last_name
 from greybox_torch.drafting.magnitudes import slips
 from greybox_torch.drafting.matching import Wanted, letter_unit, matched, words
 from greybox_torch.drafting.recorded import Recorded
@@ -77,7 +77,7 @@ def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None, first: Dra
     wanted = wanted_of(model)
     bare = _bare(columns)
     found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
-    found |= alike
+    found |= alike if first is None else alike | of_the_same_last_name(first.columns, found | alike, columns)
     found |= {channel: other for channel, column in found.items() if (other := _counting_on(file, column, columns))}
     suspected = _suspected(file, clock, model, wanted, found)
     channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)

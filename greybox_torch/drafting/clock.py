@@ -10,7 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.gaps import Gap, longest_gap
+from greybox_torch.data.readers.time_stamps import UNDERSTOOD
 from greybox_torch.data.steps import EVEN, even_step, unevenness
+from greybox_torch.data.summer_time import clock_set_back, instead_of_summer_time
 from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.drafting.recorded import Recorded
 
@@ -45,7 +47,7 @@ class Clock:
 
     ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
     ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty. ``date`` is
-    the column of the dates of times of day, else empty.
+    the column of the dates of times of day, else empty. ``said`` is whether anything says the unit.
     """
 
     column: str | None = None
@@ -56,6 +58,7 @@ class Clock:
     gap: Gap | None = None
     broken: str = ""
     date: str = ""
+    said: bool = True
 
 
 def clock_of(file: Recorded) -> Clock:
@@ -76,7 +79,17 @@ def _without_date(file: Recorded) -> Clock:
             return Clock(sample_time=value, remark=f"{name} = {value:g} in {file.path.name}")
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
-    return _broken(file) or Clock(remark="no column rises from sample to sample, and no number is called Ts, dt or fs")
+    return _broken(file) or Clock(
+        remark=f"{_not_read(file)}no column rises from sample to sample, and no number is called Ts, dt or fs"
+    )
+
+
+def _not_read(file: Recorded) -> str:
+    """Of a column of dates in another form than those that are understood, to go on with; else ""."""
+    for name, fault in file.faults.items():
+        if name not in file.columns and UNDERSTOOD in fault:
+            return f'column "{name}", {fault}; '
+    return ""
 
 
 def _broken(file: Recorded) -> Clock | None:
@@ -92,9 +105,18 @@ def _broken(file: Recorded) -> Clock | None:
             return Clock(remark=f"{told}, and no number is called Ts, dt or fs")
         told = f'column "{name}", {file.faults[name]}' if name in file.faults else told
         unit, _ = _unit(name, values[np.isfinite(values)], file.units.get(name, ""))
+        told += _set_back(values, int(falls[0])) if name in file.stamps else ""
         broken = f"{told}; to be mended in {file.path.name}"
         return Clock(name, unit or "s", remark=broken, broken=broken)
     return None
+
+
+def _set_back(values: NDArray[np.float64], fall: int) -> str:
+    """Of stamps (N,) that fall behind a sample as local time does in autumn, to go on with; else ""."""
+    step = float(np.nanmedian(np.diff(values)))
+    if not clock_set_back(values[fall], values[fall + 1], step):
+        return ""
+    return f", as where local time is set back from summer time: expected {instead_of_summer_time(step)}"
 
 
 def _comes_first(column: str, file: Recorded) -> bool:
@@ -107,9 +129,9 @@ def named_like_a_clock(column: str) -> bool:
     return bool(_TIME.search(column))
 
 
-def is_clock(values: NDArray[np.float64]) -> bool:
-    """Whether values (N,) rise from sample to sample, in steps that hardly differ."""
-    return _rises(values) and unevenness(values) < _EVEN_ENOUGH
+def is_clock(values: NDArray[np.float64], *, gaps: bool = True) -> bool:
+    """Whether values (N,) rise from sample to sample, in steps that hardly differ; without ``gaps``, but for those that are gaps."""
+    return _rises(values) and unevenness(values, gaps=gaps) < _EVEN_ENOUGH
 
 
 def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
@@ -119,7 +141,7 @@ def _clock(column: str, values: NDArray[np.float64], unit: str) -> Clock:
     seconds = values * SECONDS.get(known, 1.0)
     uneven = even_step(seconds) if unevenness(values, gaps=False) > EVEN else ""
     remark = f"{why}{_step(step, values, known or 's')}{doubt}"
-    return Clock(column, known or "s", remark=remark, uneven=uneven, gap=longest_gap(seconds))
+    return Clock(column, known or "s", remark=remark, uneven=uneven, gap=longest_gap(seconds), said=bool(known))
 
 
 def _unit(column: str, values: NDArray[np.float64], unit: str) -> tuple[str, str]:

@@ -57,10 +57,13 @@ def contradictions(card: Path | None) -> list[Contradiction]:
 
 
 def _found(card: Card) -> Iterator[Contradiction]:
-    named = [("", {TIME: card.time.column if card.time else None} | {n: e.column for n, e in card.channels.items()})]
-    named += [(f'[[experiment]] "{e.name}", ', dict(e.columns)) for e in card.experiment]
-    columns = {column for _, of in named for column in of.values() if column}
-    for where, of in named:
+    whole = {TIME: card.time.column if card.time else None} | {n: e.column for n, e in card.channels.items()}
+    named = [("", whole, card)]
+    for e in card.experiment:
+        own: dict[str, str | None] = {name: column.column for name, column in e.columns.items()}
+        named.append((f'[[experiment]] "{e.name}", ', own, card.of(e)))
+    columns = {column for _, of, _ in named for column in of.values() if column}
+    for where, of, card in named:
         for name, column in of.items():
             if column is None:
                 continue

@@ -12,6 +12,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.gaps import Gap, longest_gap
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.units import conversion
@@ -44,15 +45,36 @@ class ContradictedSteps(InASentence):
     @property
     def write(self) -> str:
         """What to write instead."""
-        column = toml_text(self.column)
+        time = f"time = {_time_entry(self.column, self.unit)} in its place"
         if self.unit in ("", "s"):
             doubt = "" if self.unit else ", if the stamps are in s"
-            return f"time = {column} in its place, or sample_time = {self.step:.6g}{doubt}"
-        return f"time = {{ column = {column}, unit = {toml_text(self.unit)} }} in its place"
+            return f"{time}, or sample_time = {self.step:.6g}{doubt}"
+        return time
 
 
-def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps]:
-    """The first file whose stamps say another sample time than the card; none where the card names its time stamps."""
+@dataclass(frozen=True)
+class ClosedGap(InASentence):
+    """A gap in time stamps, which samples that are counted by a sample time leave out."""
+
+    file: str
+    column: str
+    unit: str
+    gap: Gap
+
+    @property
+    def found(self) -> str:
+        """What is there, in a sentence."""
+        counted = "samples that are counted run on there as if none were missing"
+        return f'sample_time: column "{self.column}" of {self.file} has a {self.gap}; {counted}'
+
+    @property
+    def write(self) -> str:
+        """What to write instead."""
+        return f"time = {_time_entry(self.column, self.unit)} in its place"
+
+
+def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps | ClosedGap]:
+    """The first file whose stamps say another sample time than the card, or have a gap; none where the card names its time stamps."""
     if data.path is None or not data.path.is_file():
         return
     card = read_card(data.path)
@@ -65,7 +87,7 @@ def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps]:
             return
 
 
-def _told(file: Path, sample_time: float) -> ContradictedSteps | None:
+def _told(file: Path, sample_time: float) -> ContradictedSteps | ClosedGap | None:
     try:
         names = columns_of(file).names
     except UserError:  # a format that cannot list its columns
@@ -76,16 +98,25 @@ def _told(file: Path, sample_time: float) -> ContradictedSteps | None:
         except UserError:  # a column of text
             continue
         stamps = table.columns[name]
-        if not is_clock(stamps):
+        if not is_clock(stamps, gaps=False):
             continue
         steps = np.diff(stamps)
         usual, unit = float(np.median(steps)), _unit(table, name)
         if not unit and usual == 1.0:  # counts samples
             return None
-        seconds = [conversion(one, "s", "")[0] for one in ((unit,) if unit else _UNITS)]
-        same = [abs(step * s / sample_time - 1.0) < _SAME for step in (usual, float(steps.mean())) for s in seconds]
-        return None if any(same) else ContradictedSteps(file.name, name, usual, unit, sample_time)
+        seconds = {one: conversion(one, "s", "")[0] for one in ((unit,) if unit else _UNITS)}
+        mean = float(steps.mean())
+        same = [u for u, s in seconds.items() if any(abs(one * s / sample_time - 1.0) < _SAME for one in (usual, mean))]
+        if not same:
+            return ContradictedSteps(file.name, name, usual, unit, sample_time)
+        gap = longest_gap(stamps * seconds[same[0]])
+        return None if gap is None or gap.of_summer_time else ClosedGap(file.name, name, same[0], gap)
     return None
+
+
+def _time_entry(column: str, unit: str) -> str:
+    text = toml_text(column)
+    return text if unit in ("", "s") else f"{{ column = {text}, unit = {toml_text(unit)} }}"
 
 
 def _unit(table: Table, column: str) -> str:

@@ -1,10 +1,36 @@
-"""What is to be looked at in further files of a card: the channels that they lack, and units that the first file alone says."""
+"""Further files of a card: their own columns and units, and what is to be looked at there, such as channels that they lack."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
+from greybox_torch.drafting.own_units import own_unit_of_time, own_units
 from greybox_torch.drafting.runs import Run, names_of
+from greybox_torch.files import toml_text
+
+
+def own_columns(run: Run, first: Run) -> dict[str, str]:
+    """The entries of an experiment's `columns`, in TOML: of columns with another name or unit than in the ``first`` run."""
+    own: dict[str, str] = {}
+    units = own_units(run, first)
+    for draft, drafted in zip(run.table.channels, first.table.channels, strict=False):
+        unit = units[draft.name].file_unit if draft.name in units else None
+        if draft.column is not None and (unit is not None or draft.column != drafted.column):
+            own[draft.name] = _entry(draft.column, "file_unit", unit)
+    column, unit = run.clock.column, own_unit_of_time(run, first)
+    if column is not None and (unit is not None or column != first.clock.column):
+        own["time"] = _entry(column, "unit", unit)
+    return own
+
+
+def guessed_units(run: Run, first: Run) -> str:
+    """A remark behind these columns, where units of them were guessed; else ""."""
+    return "; ".join(f"{channel}: {unit.guess}" for channel, unit in own_units(run, first).items() if unit.guess)
+
+
+def _entry(column: str, key: str, unit: str | None) -> str:
+    text = toml_text(column)
+    return text if unit is None else f"{{ column = {text}, {key} = {toml_text(unit)} }}"
 
 
 def of_further_runs(runs: Sequence[Run]) -> list[str]:
@@ -18,14 +44,6 @@ def of_further_runs(runs: Sequence[Run]) -> list[str]:
                 more = f"; of another length: {', '.join(others)}" if others else ""
                 remark = draft.remark.partition("; or, of a constant")[0]
                 told.append(f"{place}, {draft.name}: {remark}{more}; else leave the experiment out")
-            elif draft.column not in (None, drafted.column) and drafted.file_unit and not draft.file_unit:
-                told.append(
-                    f'{place}, {draft.name}: the name of "{draft.column}" says no unit: it is converted from {drafted.file_unit}, as '
-                    f'"{drafted.column}" is; where it is in another unit, this file needs a card of its own'
-                )
-        if run.clock.column is not None and first.clock.column is not None and run.clock.unit != first.clock.unit:
-            told.append(
-                f'{place}, time: "{run.clock.column}" is in {run.clock.unit}, and that of the first file in {first.clock.unit}; '
-                "expected one unit of time in all files of a card: this one needs a card of its own"
-            )
+        units = own_units(run, first)
+        told += [f"{place}, {channel}: {unit.guess}; please check" for channel, unit in units.items() if unit.guess]
     return told

@@ -1,8 +1,12 @@
-"""Columns of a further file that are called as those of the first one with something added to all: "uval" and "yval" for "u" and "y"."""
+"""Columns of a further file that are called as those of the first one with something added to all, "uval" and "yval" for "u" and "y", or as
+they are in another structure: "log.az" for "az".
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+
+from greybox_torch.data.column_units import without_unit
 
 
 def likened(first: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
@@ -20,3 +24,22 @@ def likened(first: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
         if known.issuperset(found.values()):
             return found
     return {}
+
+
+def of_the_same_last_name(first: Mapping[str, str], found: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
+    """By channel that has a column in the ``first`` file and none ``found`` in this one, the free column that is called so within its
+    structure; none where two are.
+    """
+    free = [column for column in columns if column not in found.values()]
+    alike: dict[str, str] = {}
+    for channel, known in first.items():
+        own = [column for column in free if _last(column) == _last(known)]
+        if channel not in found and len(own) == 1:
+            alike[channel] = own[0]
+    return alike
+
+
+def _last(column: str) -> str:
+    """ "az" of "log.imu.az [g]". A point before a blank is none between names."""
+    name = without_unit(column)
+    return name.rpartition(".")[2] if all(part.isidentifier() for part in name.split(".")) else name

@@ -11,24 +11,26 @@ from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
 from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
+from greybox_torch.report.time_axis import time_unit
 
 _MOST_COLUMNS = 3
 _MOST_CHANNELS = 24
 
 
-def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
+def plot_channels(data: DataSet, along: str = "") -> Figure:
     """An experiment a column, a channel a row; after three experiments the columns go on in another band of rows.
 
-    The channels of an experiment share the time axis, in seconds since its start. A channel has the same vertical axis, in its unit,
+    The channels of an experiment share the time axis, since its start. A channel has the same vertical axis, in its unit,
     in all experiments. Of very many channels or experiments the figure shows the first, and says so. Gaps in the time stamps break the
     curve; samples that stand alone are dots. Missing samples leave a gap in it and a red mark at the foot of it, and are counted beside the
     axes.
 
     Args:
-        along: the label of the horizontal axis.
+        along: the label of the horizontal axis, where it is no time.
     """
     channels = list(data.channels.values())[:_MOST_CHANNELS]
     recordings = data.recordings[: max(MOST_PANELS // len(channels), 1)]
+    unit = time_unit(0.0 if along else max(recording.seconds for recording in recordings))
     columns = min(len(recordings), _MOST_COLUMNS)
     bands = -(-len(recordings) // columns)
     size = (max(8.0, 4.5 * columns), 0.8 + bands * (0.6 + 1.8 * len(channels)))
@@ -50,13 +52,13 @@ def plot_channels(data: DataSet, along: str = "time [s]") -> Figure:
                 )
                 same_channel.setdefault(channel.name, axes)
                 top = top or axes
-                _plot(axes, recording, channel)
+                _plot(axes, recording, channel, unit.seconds)
                 axes.tick_params(labelbottom=row == len(channels) - 1, labelleft=column == 0)
                 if column == 0:
                     axes.set_ylabel(with_unit(channel.name, channel.unit))
             if top is not None:
                 top.set_title(f"{fill(recording.name, 40)} ({recording.role})", fontsize=10)
-            axes.set_xlabel(along)
+            axes.set_xlabel(along or unit.label)
     return figure
 
 
@@ -66,8 +68,9 @@ def _alone(values: np.ndarray) -> np.ndarray:
     return gone[:-2] & ~gone[1:-1] & gone[2:]
 
 
-def _plot(axes: Axes, recording: Recording, channel: Channel) -> None:
-    values, time = recording.signals[channel.name], since_start(recording)
+def _plot(axes: Axes, recording: Recording, channel: Channel, seconds: float) -> None:
+    """``seconds`` is one unit of the time axis."""
+    values, time = recording.signals[channel.name], since_start(recording) / seconds
     axes.plot(*broken_at_gaps(time, values), linewidth=0.7)
     alone = _alone(values)
     if alone.any():

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure, FigureBase
 from greybox_torch.data import Channel, Recording
 from greybox_torch.estimate.divergence import beyond_reach
 from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, since_start, with_unit
+from greybox_torch.report.time_axis import time_unit
 
 Panel = tuple[Recording, Mapping[str, np.ndarray], Mapping[str, str]]
 """A recording, the outputs (N, n_y) by the model's name, and what to say of each model."""
@@ -51,7 +52,8 @@ def plot_comparisons(panels: Sequence[Panel], outputs: list[Channel]) -> Figure:
 
 def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> None:
     recording, simulated, legend = panel
-    time = since_start(recording)
+    unit = time_unit(recording.seconds)
+    time = since_start(recording) / unit.seconds
     figure.suptitle(f"{recording.name} ({recording.role})", fontweight="bold")
     grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
     for k, output in enumerate(outputs):
@@ -71,6 +73,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
             pieces = {label: values[part] for label, values in runs.items()}
             _plot_signals(above, time[part], measured[part], pieces)
             _plot_errors(below, time[part], measured[part], pieces)
+            below.set_xlabel(unit.label)
             if lost:
                 _keep_to(measured, above, below)
             if column == 0:
@@ -96,7 +99,6 @@ def _plot_errors(axes: Axes, time: np.ndarray, measured: np.ndarray, runs: Mappi
     for values in runs.values():
         axes.plot(*broken_at_gaps(time, measured - values), linewidth=0.8)
     axes.margins(x=0)
-    axes.set_xlabel("time [s]")
 
 
 def _followed(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.report.style import STYLE, dots_within, with_unit
+from greybox_torch.report.time_axis import time_unit
 
 STROKE = 5.0
 """Widths that a stroke is long by which one of several curves is drawn."""
@@ -45,6 +46,8 @@ def plot_design(
     """
     several = max((len(o) for o in outputs.values()), default=1) > 1
     driven = {} if feedback is None else feedback.driven
+    unit = time_unit(float(np.ptp(time)))
+    time = time / unit.seconds
     rows = len(inputs) + len(driven) + (2 if several else 1) * len(outputs)
     with mpl.rc_context(STYLE):
         height = 0.6 + 1.7 * rows
@@ -69,7 +72,7 @@ def plot_design(
                 compared = list(runs.values()) if feedback is None else feedback.on_one_input[name]
                 told = "" if feedback is None else f"on the input of {next(iter(runs))}; "
                 _distances(next(panels), time, compared, units.get(name, ""), level[name], told, next(iter(runs)))
-        axes[-1].set_xlabel("time [s]")
+        axes[-1].set_xlabel(unit.label)
     return figure
 
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 
 from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
+from greybox_torch.report.time_axis import time_unit
 
 
 def plot_residuals(rows: Sequence[Residuals], title: str) -> Figure:
@@ -51,10 +52,11 @@ def _label_once(axes: np.ndarray) -> None:
 
 
 def _plot_errors(axes: Axes, row: Residuals) -> None:
-    axes.plot(*broken_at_gaps(since_start(row.recording), row.errors), linewidth=0.6)
+    unit = time_unit(row.recording.seconds)
+    axes.plot(*broken_at_gaps(since_start(row.recording) / unit.seconds, row.errors), linewidth=0.6)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")
-    axes.set_xlabel("time [s]")
+    axes.set_xlabel(unit.label)
     axes.set_ylabel("residual of\n" + with_unit(row.output.name, row.output.unit))
 
 

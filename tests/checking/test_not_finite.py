@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal
 
+import pytest
 import torch
 
 import greybox_torch as gt
@@ -186,3 +187,18 @@ def test_a_line_of_which_random_points_have_told_is_not_told_again(data_set) -> 
     recorded = [{"command": [1.0] * 20, "pressure": [3e5 if k < 10 else 1e5 for k in range(20)]}]
     found = [f.found for f in gt.check(Tank(), data_set({"command": "", "pressure": "Pa"}, recorded)).findings]
     assert sum("no number" in one for one in found) == 1
+
+
+def test_a_parameter_of_0_that_divides_is_an_error(data_set) -> None:
+    """Seen: "can be used", advice on roots, and of fit that no change of one parameter avoids it: 0 times anything is 0."""
+
+    class Massless(Gap):
+        parameters = (gt.Parameter("C", 1e-5, unit="N m^2"), gt.Parameter("m", 0.0, unit="kg"))
+
+    data = data_set({"force": "N", "gap": "m"}, [{"force": [1.0] * 20, "gap": [0.01] * 20}])
+    (found,) = (f for f in gt.check(Massless(), data).findings if "at the start" in f.found)
+    assert found.level == "error" and found.found.endswith("where m = 0")
+    assert found.write == "a value other than 0 for m, on the card or in the model"
+    data = data_set({"force": "N", "gap": "m"}, [{"force": [1.0] * 20, "gap": [0.01, 0.011] * 10}])
+    with pytest.raises(gt.NumericalError, match=r"it does not with m = 1 kg \(now 0\)"):
+        gt.fit(Massless(), data)

@@ -92,3 +92,20 @@ def test_what_is_summed_is_told_as_a_sum() -> None:
 def test_a_quarter_that_was_held_out_by_default_is_as_long_as_it_is() -> None:
     whole = data(5000.0, 80.0).estimation()
     assert not list(short_records(gt.DataSet(whole), Plate()))
+
+
+def test_estimation_experiments_that_are_short_beside_the_machine() -> None:
+    """Seen: an hour of a wall of two days passed every check, and C came out ten thousand times too large."""
+    *_, told = short_records(data(24.0, 24.0), Plate())
+    assert "lasts 24 s, 4.8 % of the slowest time constant, 500 s by the model's values" in told.found
+    assert not list(short_records(data(40.0, 40.0), Plate()))
+
+
+def test_few_samples_for_what_is_unknown() -> None:
+    signals = {"P": np.sin(np.arange(10)), "T": np.cos(np.arange(10))}
+    signals["T"][2:9] = np.nan
+    runs = [
+        gt.Recording.from_arrays(role, signals, sample_time=20.0, role=role) for role in ("estimation", "validation")
+    ]
+    (told,) = short_records(gt.DataSet(runs), Plate())
+    assert told.found.startswith("[[experiment]]: 3 measured values for 2 parameters and 1 start state to estimate")

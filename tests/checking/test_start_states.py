@@ -64,3 +64,24 @@ def test_a_card_may_say_where_they_begin() -> None:
 def test_a_simulation_is_refused_for_all_at_once() -> None:
     with pytest.raises(UserError, match=re.compile("model Winch: 2 problems:.*motor_speed.*drum_speed", re.DOTALL)):
         gt.simulate(Winch(), data())
+
+
+class Zone(gt.GreyBoxModel):
+    states = (gt.State("air", "degC", initial="measured"), gt.State("wall", "degC", initial="measured"))
+    inputs = (gt.Input("heat", "W"),)
+    outputs = (gt.Output("air", "degC"),)
+    parameters = (gt.Parameter("C", 1.0, unit="J/K"), gt.Parameter("k", 1.0, unit="W/K"))
+
+    def derivative(self, x, u, p, port):
+        flow = p.k * (x.wall - x.air)
+        return {"air": (u.heat + flow) / p.C, "wall": -flow / p.C}
+
+    def output(self, x, u, p):
+        return {"air": x.air}
+
+
+def test_a_start_that_shows_another_state_is_noted() -> None:
+    """Seen: a wall that began at the air's temperature without a word."""
+    (note,) = (f for f in gt.check(Zone()).findings if "first sample" in f.found)
+    assert note.level == "note" and note.found.startswith("state 'wall' begins with the first sample of air")
+    assert 'State("wall", …, initial=0.0)' in note.write

@@ -185,8 +185,8 @@ def test_a_value_of_the_card_that_the_equations_divide_by(
     card = motor_folder() / "dataset.toml"
     edit(card, "J = { value = 0.03 }", "J = { value = 0.0 }")
     done = CliRunner().invoke(app, ["check", str(card)])
-    assert "warning: my_motor.py, line 20: the equations give no number at the start" in done.stdout
-    assert "where J = 0" in done.stdout
+    assert "error: my_motor.py, line 20: the equations give no number at the start" in done.stdout
+    assert "where J = 0" in done.stdout and "a value other than 0 for J" in done.stdout
 
 
 def test_a_mass_that_a_card_makes_negative(

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import greybox_torch as gt
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.data import load_dataset
 from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
@@ -97,3 +98,51 @@ def test_times_that_have_dates_already(card: Path) -> None:
 def test_a_date_alone_is_its_midnight() -> None:
     assert TimeStamps().seconds("1970-01-02") == TimeStamps().seconds("02.01.1970") == 86400.0
     assert not any(map(is_time_stamp, ("", "2026-03-01T", "2026-03-01 ", "01.03.2026Z")))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "02.01.1970 00:05",
+        "02.01.70, 00:05",
+        "1970-01-02 00:05",
+        "1970-01-02 00:05 UTC",
+        "1970-01-02 01:05:00+01",
+        "1970/01/02 00:05",
+        "02-Jan-1970 00:05:00",
+        "2 jan 1970 12:05 AM",
+        "19700102T0005",
+        "19700102T000500Z",
+    ],
+)
+def test_dates_as_they_are_often_written(text: str) -> None:
+    """Seen: "no column rises from sample to sample" of dates with hours and minutes."""
+    assert TimeStamps().seconds(text) == 86700.0 and is_time_stamp(text)
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "days", "noted"),
+    [
+        ("13/02/2026 23:50", "14/02/2026 00:00", 20498, False),
+        ("02/13/2026 11:50 PM", "02/14/2026 12:00 AM", 20498, False),
+        ("03/04/2026 23:50", "04/04/2026 00:00", 20547, True),
+        ("04/03/26 23:50", "04/04/26 00:00", 20547, True),
+        ("03-04-2026", "04-04-2026", 20547, True),
+    ],
+)
+def test_the_dates_tell_which_number_is_the_day(first: str, last: str, days: int, noted: bool) -> None:
+    stamps = TimeStamps([first, first, last])
+    assert stamps.seconds(last) == days * 86400.0 and bool(stamps.note) is noted
+    with pytest.raises(ValueError, match="which number is the day cannot be told"):
+        one_by_one = TimeStamps(["03/04/2026 12:00", "06/05/2026 12:00"])
+        one_by_one.seconds("03/04/2026 12:00"), one_by_one.seconds("06/05/2026 12:00")
+
+
+def test_dates_that_are_not_understood_are_told_as_such(tmp_path: Path) -> None:
+    lines = [f"Feb 2 2026 00:{k:02};{k % 7};{k % 5}" for k in range(30)]
+    (tmp_path / "run.csv").write_text("\n".join(["Timestamp;u;y", *lines]))
+    (told,) = gt.card(tmp_path / "run.csv").open
+    assert told.startswith('sample_time: column "Timestamp", line 2: found "Feb 2 2026 00:00"')
+    assert "it looks like a date or a time of day; understood are 2026-03-01 12:00, 01.03.2026 12:00" in told
+    with pytest.raises(ValueError, match="hours and minutes, or minutes and seconds, may be meant"):
+        TimeStamps().seconds("12:00")

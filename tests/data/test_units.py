@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.data.units import TurnOrRadian, conversion, slip, written_alike
+from greybox_torch.data.units import TurnOrRadian, conversion, dimensionality, slip, written_alike
 from greybox_torch.errors import UserError
 
 TURNS = 2 * np.pi / 60
@@ -119,3 +119,10 @@ def test_written_alike() -> None:
 def test_units_of_other_quantities_are_not_alike(one: str, other: str) -> None:
     assert not written_alike(one, other)
     assert not written_alike(other, one)
+
+
+@pytest.mark.parametrize(("unit", "meant"), [("W/Kelvin", ' (did you mean "W/K"?)'), ("Foo", ""), ("foo/kg", "")])
+def test_names_that_begin_with_a_capital(unit: str, meant: str) -> None:
+    with pytest.raises(ValueError, match="is not a unit") as refused:
+        dimensionality(unit)
+    assert str(refused.value) == f'"{unit}" is not a unit{meant}'

@@ -103,13 +103,47 @@ def test_what_further_files_lack_and_do_not_say_is_told(tmp_path: Path) -> None:
         == '[[experiment]] "b", angle: no column fits; of another length: angle_slow; else leave the experiment out'
     )
     assert told[1] == '[[experiment]] "c", voltage: no column fits; left over: torque; else leave the experiment out'
-    assert told[2].startswith(
-        '[[experiment]] "c", angle: the name of "angle_c" says no unit: it is converted from deg, as'
+    assert told[2] == (
+        '[[experiment]] "c", angle: no unit is said: deg by its size beside that of "angle [deg]" of a.csv; please check'
     )
-    assert told[3].startswith(
-        '[[experiment]] "c", time: "t_ms" is in ms, and that of the first file in s; expected one unit'
+    assert len(told) == 3
+
+
+def test_units_of_further_files_that_are_not_those_of_the_first(tmp_path: Path) -> None:
+    """Seen: an angle in rad "converted from deg" as the first file's is, and three of four files sent to a card of their own, as one logger
+    counted in ms.
+    """
+    rows = zip(T, V, np.degrees(Q), strict=True)
+    (tmp_path / "a.csv").write_text("t_ms,voltage,angle [deg]\n" + "".join(f"{1000 * t},{v},{q}\n" for t, v, q in rows))
+    scipy.io.savemat(tmp_path / "b.mat", {"log": {"t": T, "voltage": 1000 * V, "angle": Q}})
+    rows = zip(T, 1000 * V, Q, strict=True)
+    (tmp_path / "c.csv").write_text(
+        "t,voltage [mV],angle [rad]\n" + "".join(f"{1000 * t},{v},{q}\n" for t, v, q in rows)
     )
-    assert len(told) == 4
+    drafted = gt.card([tmp_path / name for name in ("a.csv", "b.mat", "c.csv")], Arm())
+    assert drafted.open == (
+        '[[experiment]] "b", angle: no unit is said: rad by its size beside that of "angle [deg]" of a.csv; please check',
+    )
+    assert "# angle: no unit is said: rad by its size" in drafted.text
+    assert (
+        'angle = { column = "log.angle", file_unit = "rad" }, time = { column = "log.t", unit = "s" }' in drafted.text
+    )
+    assert 'voltage = { column = "voltage [mV]", file_unit = "mV" }' in drafted.text and 'time = "t" }' in drafted.text
+    drafted.save()
+    first, *others = gt.load_dataset(drafted.path).recordings
+    for other in others:
+        np.testing.assert_allclose(other.signals["angle"], first.signals["angle"], atol=1e-12)
+        np.testing.assert_allclose(other.time, first.time, atol=1e-12)
+    np.testing.assert_allclose(others[1].signals["voltage"], first.signals["voltage"], atol=1e-12)
+
+
+def test_a_column_of_the_same_name_inside_of_a_structure(tmp_path: Path) -> None:
+    """Seen: "no column fits; left over: log.az, log.vbat" of the file behind one whose az was taken."""
+    rows = zip(T, V, Q, strict=True)
+    (tmp_path / "a.csv").write_text("t,voltage,enc [rad]\n" + "".join(f"{t},{v},{q}\n" for t, v, q in rows))
+    scipy.io.savemat(tmp_path / "b.mat", {"log": {"t": T, "voltage": V, "enc": Q, "other": V}})
+    drafted = gt.card([tmp_path / "a.csv", tmp_path / "b.mat"], Arm())
+    assert 'angle = "log.enc"' in drafted.text and not drafted.open
 
 
 def test_a_column_inside_a_structure_is_told_with_those_beside_it(tmp_path: Path) -> None:

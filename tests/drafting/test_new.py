@@ -100,3 +100,10 @@ def test_from_python() -> None:
     assert "class MyTank(GreyBoxModel)" in made.text
     assert "class MyTank(GreyBoxModel)" in made._repr_html_()
     assert len(made.plot().axes) == 1
+
+
+@pytest.mark.parametrize("name", ["torch", "numpy", "json"])
+def test_names_of_installed_modules(tmp_path: Path, name: str) -> None:
+    """Seen: torch.py written, and every script in that folder ended in a circular import."""
+    with pytest.raises(gt.UserError, match=f"is the name of an installed module, which {name}.py would hide"):
+        gt.new(name, path=tmp_path / f"{name}.py")

@@ -42,7 +42,7 @@ FAULTS = [
     (TOP, TOP + "\nx = " + "{a=" * 5000, "nested too deeply"),
     (TOP, TOP + "\n" + ".".join("a" * 3000) + " = 1", "dataset.toml"),
     (TOP, TOP + "\nsmaple_time = 1", 'unknown key "smaple_time" (did you mean "sample_time"?)'),
-    ('hold = "zoh"', 'hold = "linear"', "hold: found \"linear\", expected 'zoh' or 'foh'"),
+    ('hold = "zoh"', 'hold = "linear"', 'hold: found "linear", expected "zoh" (held'),
     ('hold = "zoh"', "hold = 1", "hold: found 1"),
     ('name = "Bench"', 'name = ""', 'name: found "", expected text that is not empty'),
     ('name = "Bench"', "name = 3", "name: found 3, expected text in quotes"),

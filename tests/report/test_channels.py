@@ -91,3 +91,15 @@ def test_very_many_of_both_are_told_and_not_drawn() -> None:
     figure = plot_channels(data)
     assert len(figure.axes) == 72
     assert figure.get_suptitle() == "Many (the first 24 of 60 channels) (the first 3 of 40 experiments)"
+
+
+def test_long_records_have_hours_or_days() -> None:
+    """Seen: 0.5×10⁵ s on the axis of a building's week."""
+    for step, label, end in ((300.0, "time [h]", 99 * 300.0 / 3600.0), (3600.0, "time [d]", 99.0 / 24.0)):
+        signals = {"heat": np.ones(100), "air": np.arange(100.0)}
+        data = DataSet([Recording.from_arrays("zone", signals, sample_time=step)], held_out_by_default=False)
+        axes = plot_channels(data).axes
+        assert axes[-1].get_xlabel() == label and axes[-1].get_xlim()[1] == end
+        outputs = [data.channels["air"]]
+        figure = plot_comparison(data.recordings[0], outputs, {"model": np.zeros((100, 1))}, {"model": "m"})
+        assert [a.get_xlabel() for a in figure.axes] == ["", label, "", label]

@@ -12,6 +12,7 @@ from __future__ import annotations
 from array import array
 from collections import Counter
 from collections.abc import Collection, Iterator
+from itertools import repeat
 from pathlib import Path
 from typing import TextIO
 
@@ -22,7 +23,7 @@ from greybox_torch.data.readers.missing_marks import is_missing
 from greybox_torch.data.readers.table import BadCell, Table
 from greybox_torch.data.readers.text_layout import Layout, encoding_of, layout_of
 from greybox_torch.data.readers.text_rows import UnreadableRow
-from greybox_torch.data.readers.time_stamps import TimeStamps
+from greybox_torch.data.readers.time_stamps import UNDERSTOOD, TimeStamps, looks_like_a_date
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
 
@@ -52,7 +53,7 @@ def _read_samples(path: Path, file: TextIO, layout: Layout, marks: frozenset[tup
     found: Counter[tuple[str, str]] = Counter()
     lines = array("q")
     values = {column: array("d") for column in layout.positions}
-    stamps = {column: TimeStamps() for column in layout.stamps}
+    written: dict[str, list[str]] = {column: [] for column in layout.stamps}
     places = [(column, position, values[column].append) for column, position in layout.positions.items()]
     for line, row in _samples(path, file, layout):
         lines.append(line)
@@ -61,13 +62,18 @@ def _read_samples(path: Path, file: TextIO, layout: Layout, marks: frozenset[tup
             if is_missing(cell) or (column, cell) in marks:
                 found[column, cell] += 1
                 cell = ""
-            if column in stamps:
-                append(_seconds(path, line, column, cell, stamps[column]))
+            if column in written:
+                written[column].append(cell)
             else:
                 append(_number(path, line, column, cell, layout.decimal))
-    units = layout.units | dict.fromkeys(stamps, "s")
+    notes = list(_told(path, found))
+    for column, cells in written.items():  # all of a column tell which number of a date is the day
+        stamps = TimeStamps(cells)
+        values[column].extend(_seconds(path, *at, stamps) for at in zip(lines, repeat(column), cells))
+        notes += [f'column "{column}" of {path.name}: {stamps.note}'] if stamps.note else []
+    units = layout.units | dict.fromkeys(written, "s")
     columns = {column: np.array(samples) for column, samples in values.items()}
-    return Table(path, columns, lines, units, _told(path, found), layout.stamps)
+    return Table(path, columns, lines, units, tuple(notes), layout.stamps)
 
 
 def _told(path: Path, found: Counter[tuple[str, str]]) -> tuple[str, ...]:
@@ -101,6 +107,8 @@ def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> floa
     _refuse_names(path, line, column, cell)
     sign = "; decimals have a comma in this file" if decimal == "," else ""
     mark = not any(character.isdigit() for character in cell)
+    if looks_like_a_date(cell):
+        sign += f"; it looks like a date or a time of day; {UNDERSTOOD}"
     if mark:
         sign += f"; if this is another one, missing = {toml_text(cell[:60])} in the channel's line on the card"
     raise BadCell(

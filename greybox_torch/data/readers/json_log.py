@@ -110,9 +110,9 @@ def _numbers(place: str, values: Any, lines: list[int] | None = None) -> NDArray
 
 
 def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[float]:
-    stamps = TimeStamps()
-    texts = (v for v in values if isinstance(v, str) and not is_missing(v.strip()))
-    as_times = is_time_stamp(next(texts, ""))
+    texts = [v for v in values if isinstance(v, str) and not is_missing(v.strip())]
+    as_times = bool(texts) and is_time_stamp(texts[0])
+    stamps = TimeStamps(texts if as_times else ())
     for k, value in enumerate(values):
         if value is None or (isinstance(value, str) and is_missing(value.strip())):
             yield float("nan")

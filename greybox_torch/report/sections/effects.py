@@ -18,6 +18,7 @@ from greybox_torch.report.chart.scale import Scale, linear
 from greybox_torch.report.sections.frequency import Responses, responses
 from greybox_torch.report.sections.law import law_chart
 from greybox_torch.report.sections.memory import memory_chart
+from greybox_torch.report.time_axis import time_unit
 
 MOST_EXPERIMENTS = 4
 """Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
@@ -216,12 +217,14 @@ def _timelines(effect: Effect) -> Chart | None:
 
 
 def _timeline(along: Timeline, y: Scale) -> Panel:
-    x, peak = linear(along.edges, room=0.0), int(np.argmax(along.share))
+    unit, peak = time_unit(float(np.ptp(along.edges))), int(np.argmax(along.share))
+    edges = along.edges / unit.seconds
+    x = linear(edges, room=0.0)
     alt = (
         f"Share of the explained error energy along {along.experiment}: {100 * along.share.sum():.0f} % in all, most of it between "
-        f"{text.number(float(along.edges[peak]))} and {text.number(float(along.edges[peak + 1]))} s."
+        f"{text.number(float(edges[peak]))} and {text.number(float(edges[peak + 1]))} {unit.symbol}."
     )
-    marks = (bars(x, y, along.edges, 100.0 * along.share, "effect"),)
+    marks = (bars(x, y, edges, 100.0 * along.share, "effect"),)
     return Panel(
-        x, y, "time [s]", "share of explained error [%]", marks, alt, "low", f"experiment {along.experiment}", zero=True
+        x, y, unit.label, "share of explained error [%]", marks, alt, "low", f"experiment {along.experiment}", zero=True
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 import numpy as np
@@ -17,6 +17,7 @@ from greybox_torch.report.chart.marks import Mark, line, span
 from greybox_torch.report.chart.panel import Chart, Key, Live, Panel
 from greybox_torch.report.chart.samples import Samples, share_of_each
 from greybox_torch.report.chart.scale import Scale, linear
+from greybox_torch.report.time_axis import TimeUnit, time_unit
 
 MOST_CHARTS = 12
 """Charts on one page; with more experiments, those whose error was largest are drawn."""
@@ -125,7 +126,7 @@ def _relative_error(trace: Trace) -> float:
 
 @dataclass(frozen=True)
 class _Stretch:
-    """A part of one output's record, with the axis and the shade that its panels share; ``closer`` where a reader can look closer."""
+    """A part of one output's record, with the axis, in ``unit``, and the shade of its panels; ``closer`` where a reader can look closer."""
 
     trace: Trace
     runs: dict[str, np.ndarray]
@@ -134,6 +135,7 @@ class _Stretch:
     shade: tuple[Mark, ...]
     detail: tuple[float, float]
     closer: bool
+    unit: TimeUnit
 
     @property
     def time(self) -> np.ndarray:
@@ -151,6 +153,8 @@ class _Stretch:
 def _chart(
     trace: Trace, mismatch: bool, inputs: Sequence[InputTrace], experiment: int, most: int, of_inputs: str
 ) -> Chart:
+    unit = time_unit(float(np.ptp(trace.time)))
+    trace = replace(trace, time=trace.time / unit.seconds)
     runs = series(trace, mismatch)
     worst = _worst(trace, list(runs.values())[-1])
     where = "detail where the error after is largest" if mismatch else "detail where the error is largest"
@@ -159,7 +163,7 @@ def _chart(
     for part, title in ((slice(None), "whole record"), (worst, where)):
         x, closer = linear(trace.time[part], room=0.0), part is not worst
         shade = (span(x, *detail, "detail"),) if closer else ()
-        here = _Stretch(trace, runs, part, x, shade, detail, closer)
+        here = _Stretch(trace, runs, part, x, shade, detail, closer, unit)
         last = len(inputs) == 0
         panels = [_signal(here, title), _error(here, last=last)]
         panels += [_input(here, one, k, last=k == len(inputs) - 1) for k, one in enumerate(inputs)]
@@ -201,7 +205,7 @@ def _error(here: _Stretch, *, last: bool) -> Panel:
     marks = [line(here.x, y, here.time, error, name) for name, error in pieces.items()]
     alt = f"{trace.experiment}: error over time, {_told(trace, here.runs, part)}."
     live = here.live({name: f"error_{name}" for name in here.runs}, -reach, reach)
-    label = "time [s]" if last else ""
+    label = here.unit.label if last else ""
     axis = text.axis("error", trace.unit)
     return Panel(here.x, y, label, axis, (*here.shade, *marks), alt, "medium", zero=True, live=live)
 
@@ -213,7 +217,7 @@ def _input(here: _Stretch, one: InputTrace, number: int, *, last: bool) -> Panel
     alt = f"{here.trace.experiment}: the input {text.words(one.input)} over time."
     ends = float(np.nanmin(one.values)), float(np.nanmax(one.values))
     live = here.live({"input": f"input_{number}"}, *ends, held=one.held)
-    label = "time [s]" if last else ""
+    label = here.unit.label if last else ""
     return Panel(here.x, y, label, text.axis(one.input, one.unit), marks, alt, "low", live=live)
 
 
