@@ -190,13 +190,6 @@ class ExperimentEntry(Entry):
     columns: dict[str, OwnColumn] = {}
     constants: dict[str, Finite] = {}
 
-    @field_validator("name")
-    @classmethod
-    def _to_be_read(cls, name: str) -> str:
-        if not name.strip():
-            raise ValueError("found blanks alone, expected a name that can be read in tables and figures")
-        return name
-
     @field_validator("file", mode="before")
     @classmethod
     def _one_or_more(cls, file: Any) -> Any:

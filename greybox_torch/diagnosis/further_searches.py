@@ -76,8 +76,8 @@ def _selected(
     try:
         with until(end):
             while last.complete and last.others is not None:
-                spent = len(last.more) >= last.study.settings.most_promoted
-                more = None if spent else _promotion(last, last.others)
+                promoted = len(_chosen_with(last.dataset)) - len(begun)
+                more = _promotion(last, last.others) if promoted < last.study.settings.most_promoted else None
                 if more is None:
                     break
                 names = _chosen_with(more.dataset)

@@ -198,7 +198,7 @@ def test_a_parameter_of_0_that_divides_is_an_error(data_set) -> None:
     data = data_set({"force": "N", "gap": "m"}, [{"force": [1.0] * 20, "gap": [0.01] * 20}])
     (found,) = (f for f in gt.check(Massless(), data).findings if "at the start" in f.found)
     assert found.level == "error" and found.found.endswith("where m = 0")
-    assert found.write == "a value other than 0 for m, on the card or in the model"
+    assert found.write == "a value of m other than zero, and a bound that excludes it"
     data = data_set({"force": "N", "gap": "m"}, [{"force": [1.0] * 20, "gap": [0.01, 0.011] * 10}])
     with pytest.raises(gt.NumericalError, match=r"it does not with m = 1 kg \(now 0\)"):
         gt.fit(Massless(), data)

@@ -186,7 +186,7 @@ def test_a_value_of_the_card_that_the_equations_divide_by(
     edit(card, "J = { value = 0.03 }", "J = { value = 0.0 }")
     done = CliRunner().invoke(app, ["check", str(card)])
     assert "error: my_motor.py, line 20: the equations give no number at the start" in done.stdout
-    assert "where J = 0" in done.stdout and "a value other than 0 for J" in done.stdout
+    assert "where J = 0" in done.stdout and "a value of J other than zero" in done.stdout
 
 
 def test_a_mass_that_a_card_makes_negative(

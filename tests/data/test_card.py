@@ -172,6 +172,6 @@ def test_dates_that_are_none(tmp_path: Path, date: str, found: str) -> None:
 def test_names_of_blanks_and_other_words_for_hold(tmp_path: Path) -> None:
     """Seen: an experiment without a heading or an entry in legends, and "expected 'zoh' or 'foh'" of hold = "linear"."""
     blank = EXPERIMENT.replace(EXPERIMENT.split('name = "')[1].split('"')[0], " ", 1)
-    assert "found blanks alone, expected a name" in message_of(tmp_path, TOP + CHANNELS + blank)
+    assert "expected a name that can be seen" in message_of(tmp_path, TOP + CHANNELS + blank)
     message = message_of(tmp_path, TOP.replace('"foh"', '"linear"') + CHANNELS + EXPERIMENT)
     assert message.endswith('expected "zoh" (held until the next sample) or "foh" (straight lines between samples)')

@@ -41,7 +41,11 @@ def first(stub, monkeypatch) -> Selection:
 
     monkeypatch.setattr(further_searches, "judge", judged)
     state = SearchState(stub(effects=()), stub(effects=()))
-    return selection(state, stub(estimation=lambda: [stub(name="run 1")]), stub(working_on=working_on), stub())
+    study, dataset = (
+        stub(working_on=working_on, settings=stub(most_promoted=1)),
+        stub(estimation=lambda: [stub(name="run 1")]),
+    )
+    return selection(state, dataset, study, stub())
 
 
 def selection(state: SearchState, dataset: Any, study: Any, others: Any) -> Selection:
