@@ -22,12 +22,8 @@ PLACES = further_searches._places
 
 
 @pytest.fixture(autouse=True)
-def no_unseen_positions(monkeypatch) -> None:
-    monkeypatch.setattr(further_searches, "_places", lambda last, others: {})
-
-
-@pytest.fixture(autouse=True)
 def nothing_else_is_asked(monkeypatch) -> None:
+    monkeypatch.setattr(further_searches, "_places", lambda last, others: {})
     for asked in ("promote_part", "promote_for_a_curve", "promote_for_a_rival", "promote_to_tell_apart"):
         monkeypatch.setattr(further_searches, asked, lambda *args: None)
 
