@@ -54,11 +54,14 @@ def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
 
 
 def far_refits(estimates: Sequence[Estimate]) -> tuple[str, ...]:
-    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere."""
+    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere. What went to
+    zero is at a bound, which is told by itself.
+    """
     far = [
         f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} (begun with {one.start:.4g})"
         for one in estimates
         if one.augmented is not None
+        and one.refit[0] != 0.0
         and _times(one.augmented[0], one.start) < FAR_TIMES < _times(one.refit[0], one.start)
     ]
     if not far:
