@@ -140,7 +140,8 @@ def _judged(selection: Selection, plain: Final, augmented: Final) -> Judged:
         return found_first(study, state, judged)  # free runs of its own, for which time was left beyond that
     if instead is not None:
         return (*instead, (*found[3], *said), whole)
-    found = (*found[:3], (*found[3], *(s for s in said if s not in found[3])), found[4])
+    told = {sentence.partition(" removes ")[0] for sentence in found[3]}  # of which effects
+    found = (*found[:3], (*found[3], *(s for s in said if s.partition(" removes ")[0] not in told)), found[4])
     with until(selection.schedule.judging):
         sized, in_time = or_else(partial(sized_by_free_runs, study, found[0], others, *found[1:3]), lambda: found[1])
     return (found[0], sized, *found[2:4], found[4] and whole and in_time)

@@ -54,21 +54,24 @@ def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
 
 
 def far_refits(estimates: Sequence[Estimate]) -> tuple[str, ...]:
-    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere. What went to
-    zero is at a bound, which is told by itself.
+    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere.
+
+    Not of one that is at a bound, which is told by itself, or that the recordings do not determine.
     """
     far = [
         f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} (begun with {one.start:.4g})"
         for one in estimates
         if one.augmented is not None
-        and one.refit[0] != 0.0
+        and not one.at_bound[0]
+        and one.refit[1] is not None
+        and one.refit[1] < abs(one.refit[0])
         and _times(one.augmented[0], one.start) < FAR_TIMES < _times(one.refit[0], one.start)
     ]
     if not far:
         return ()
     return (
-        f"Re-estimated without the effects: {', '.join(far)}. The error of a model that lacks something may have several minima: "
-        "`greybox fit` may end in another one, and standard deviations hold around this one alone.",
+        f"Re-estimated without the effects: {', '.join(far)}. It may make up for what is missing. The error of such a model may also have "
+        "several minima: `greybox fit` may end in another one, and standard deviations hold around this one alone.",
     )
 
 

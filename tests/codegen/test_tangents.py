@@ -46,26 +46,29 @@ def test_entries_are_zero_where_the_jacobian_makes_them(
 
 
 class Chain(GreyBoxModel):
-    """First-order lags one behind another, the first of them loaded by a saturating one."""
+    """First-order lags one behind another, the first of them loaded by a saturating one, and the travel between the first and the last, by
+    which the Jacobian has entries of 1 and -1.
+    """
 
     inputs = (Input("u", "V"),)
     outputs = (Output("last", "V"),)
     parameters = (Parameter("T", 0.05, "s"), Parameter("a", 0.7))
 
     def __init__(self, length: int) -> None:
-        self.states = tuple(State(f"x{k}", "V") for k in range(length))
+        self.states = (*(State(f"x{k}", "V") for k in range(length)), State("travel", "V s"))
         super().__init__()
 
     def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
-        values = [getattr(x, state.name) for state in self.states]
+        values = [getattr(x, state.name) for state in self.states[:-1]]
         rates = {"x0": (u.u - values[0] - p.a * (values[1].tanh() if len(values) > 1 else 0.0)) / p.T}
-        return rates | {f"x{k}": (values[k - 1] - values[k]) / p.T for k in range(1, len(values))}
+        rates |= {f"x{k}": (values[k - 1] - values[k]) / p.T for k in range(1, len(values))}
+        return rates | {"travel": values[0] - values[-1] if len(values) > 1 else values[0]}
 
     def output(self, x: Any, u: Any, p: Any) -> dict[str, Any]:
-        return {"last": getattr(x, self.states[-1].name)}
+        return {"last": getattr(x, self.states[-2].name) + 0.1 * x.travel}
 
 
-@pytest.mark.parametrize("length", [1, 2, 5, WRITTEN_OUT, WRITTEN_OUT + 1])
+@pytest.mark.parametrize("length", [1, 2, 5, WRITTEN_OUT - 1, WRITTEN_OUT])
 def test_tangents_of_a_chain(length: int) -> None:
     """Those that are written out, and those in loops, as torch has them."""
     model, names, n = Chain(length), ("T", "a"), 60
@@ -76,9 +79,9 @@ def test_tangents_of_a_chain(length: int) -> None:
     asked = Pass(
         whole_records(records),
         np.array([0.05, 0.7]),
-        rng.normal(size=(1, length)),
+        rng.normal(size=(1, length + 1)),
         tangents=True,
-        start_directions=np.eye(length)[None],
+        start_directions=np.eye(length + 1)[None],
     )
     one, other = (
         native(model, names).run(records, asked),

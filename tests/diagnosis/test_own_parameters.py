@@ -23,6 +23,10 @@ def test_a_refit_far_off_is_told(refit: float, augmented: tuple[float, float] | 
     found = far_refits([Estimate("C_air", "J/K", 1e6, (refit, 1500.0), augmented)])
     assert bool(found) is told
     if refit == 28600.0 and told:
-        assert found[0].startswith(
-            "Re-estimated without the effects: C_air = 2.86e+04 J/K (begun with 1e+06). The error"
-        )
+        assert found[0].startswith("Re-estimated without the effects: C_air = 2.86e+04 J/K (begun with 1e+06). It may")
+
+
+@pytest.mark.parametrize(("deviation", "at_bound"), [(None, False), (3e6, False), (1500.0, True)])
+def test_a_refit_that_is_not_determined_is_not_told(deviation: float | None, at_bound: bool) -> None:
+    one = Estimate("b", "N s/m", 1e6, (28600.0, deviation), (1.2e6, 430.0), (at_bound, False))
+    assert far_refits([one]) == ()

@@ -31,8 +31,9 @@ def said_of_windows(
     if not _all_are_lost(judged):
         return ()
     gone = [e for e in before.effects if e.prefix in gains and e.prefix not in after.prefixes]
+    why = "was taken back because free runs of the validation experiments come out worse with it"
     return tuple(
-        _said(e, gains[e.prefix]) for e in gone if gains[e.prefix].errors_away > settings.held_out_beyond_chance
+        _said(e, gains[e.prefix], why) for e in gone if gains[e.prefix].errors_away > settings.held_out_beyond_chance
     )
 
 
@@ -50,7 +51,8 @@ def said_of_the_curve(
     best = curves_of(study, step)[0]
     shown = gain(others.fits(step.parent), others.fits(best.fitted))
     beyond = shown.errors_away > study.settings.held_out_beyond_chance
-    return (_said(best.candidate.attachment, shown),) if beyond else ()
+    why = "is not told, as free runs of the validation experiments do not bear it out"
+    return (_said(best.candidate.attachment, shown, why),) if beyond else ()
 
 
 def _all_are_lost(judged: Judgement) -> bool:
@@ -59,11 +61,10 @@ def _all_are_lost(judged: Judgement) -> bool:
     return bool(fits) and float(np.mean(fits)) < 0.0  # in %
 
 
-def _said(effect: Attachment, shown: Gain) -> str:
+def _said(effect: Attachment, shown: Gain, why: str) -> str:
     law = effect.mechanism
     named = spoken_at(Unknown.name if law.free else law.name, effect.port)
     return (
-        f"{named[0].upper()}{named[1:]} removes {100 * shown.share:.3g} % of the held-out squared error over windows, and was taken back "
-        "because free runs of the validation experiments come out worse with it. Those without it are lost, too: no free run follows this "
-        "machine for long, so that the windows say more."
+        f"{named[0].upper()}{named[1:]} removes {100 * shown.share:.3g} % of the held-out squared error over windows, and {why}. Those "
+        "without it are lost, too: no free run follows this machine for long, so that the windows say more."
     )

@@ -110,8 +110,9 @@ def _effect(
     ceiling = None if taken is None else ceiling_share(taken, state.memory_step)
     site = next(p for p in model.base.all_ports if p.name == attachment.port)
     local = local_signals(model, attachment, state.current.fits[0], state.current.simulator)
+    read = {*attachment.mechanism.signals(), *attachment.mechanism.needs}
     limit = lowest(
-        limited_by_time(local, study.problem.records, study.settings),
+        limited_by_time({n: v for n, v in local.items() if n in read}, study.problem.records, study.settings),
         lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=account.size),
     )
     probability = uncapped if limit is None else min(uncapped, limit.highest)
@@ -128,8 +129,7 @@ def _effect(
     own = "" if curve is None else named(curve.signal)
     curve = as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1])
     memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
-    plain_curve = mechanism.free and memory is None and not mechanism.kinematic
-    line = straight_line(curve, site, own) if plain_curve and curve is not None else ""
+    line = straight_line(curve if isinstance(mechanism, Unknown) and not mechanism.kinematic else None, site, own)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,

@@ -16,31 +16,39 @@ from greybox_torch.model.ports import Port
 STRAIGHT = 0.01
 """Share of a curve's variance along the records up to which what is left of a straight line is the imprecision of its heights."""
 
+FEWEST_PLACES = 3
+"""Places along a curve that the records have to visit: through two there is always a line."""
+
 NEXT_TO_NOTHING = 0.03
 """Share of its reach up to which what a line is at zero is left out."""
 
 
-def straight_line(curve: Curve, site: Port, signal: str) -> str:
+def straight_line(curve: Curve | None, site: Port, signal: str) -> str:
     """``port.NAME += slope * signal + constant`` where a learned curve is a straight line over what the records visit; "" elsewhere.
 
-    With a factor: where the curve is the same everywhere, what multiplies it.
+    With a factor: where the curve is the same everywhere, what multiplies it. Nor is there one where the model has no name for a signal, as
+    for a difference of two levels, which acts at both, and where only one or two values of it were visited.
 
     Args:
         signal: the model's own name of what the curve is over.
     """
-    if not isinstance(site, Body | Coupling | Balance):
+    if curve is None:
+        return ""
+    name = signal if curve.factor is None else curve.factor.signal
+    few = curve.seen is not None and np.count_nonzero(curve.seen) < FEWEST_PLACES
+    if not isinstance(site, Body | Coupling | Balance) or not name.isidentifier() or few:
         return ""
     visits = _visits(curve)
     mean = float(np.average(curve.force, weights=visits))
     variance = float(np.average((curve.force - mean) ** 2, weights=visits))
     if curve.factor is not None:
         flat = variance < STRAIGHT * mean**2 and curve.factor.value != 0
-        return f"port.{site.name} += {digits(mean / curve.factor.value, 3)} * {curve.factor.signal}" if flat else ""
+        return f"port.{site.name} += {digits(mean / curve.factor.value, 3)} * {name}" if flat else ""
     slope, at_zero = np.polyfit(curve.values, curve.force, 1, w=np.sqrt(visits))
     left = curve.force - slope * curve.values - at_zero
     if not variance or np.average(left**2, weights=visits) > STRAIGHT * variance:
         return ""
-    term = f"{digits(float(slope), 3)} * {signal}"
+    term = f"{digits(float(slope), 3)} * {name}"
     if abs(at_zero) < NEXT_TO_NOTHING * np.ptp(curve.force):
         return f"port.{site.name} += {term}"
     return f"port.{site.name} += {term} {'-' if at_zero < 0 else '+'} {digits(abs(float(at_zero)), 3)}"

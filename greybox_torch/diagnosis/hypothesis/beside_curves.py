@@ -46,13 +46,13 @@ def beside_curves(hypothesis: Hypothesis, at: Problem, *, weighed: bool = False)
 
 def _known(problem: Problem, weights: np.ndarray) -> np.ndarray:
     """By parameter (n_p,) the inverse square of the size that it is known to have: of every height that of the largest of its curve; zero
-    elsewhere, and for a curve of one weight, which is an amplitude.
+    elsewhere. A single weight beside a parameter that does the same would else leave both open.
     """
     of_effect = [name.rpartition(".")[0] for name in problem.names]
     known = np.zeros(len(problem.values))
     for effect in {name for name, own in zip(of_effect, weights, strict=True) if own}:
         own = weights & np.array([name == effect for name in of_effect])
         largest = float(np.abs(problem.values[own]).max())
-        if own.sum() > 1 and largest > 0:
+        if largest > 0:
             known[own] = 1.0 / largest**2
     return known

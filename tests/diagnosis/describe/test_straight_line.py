@@ -51,3 +51,13 @@ def test_a_curve_that_is_the_same_everywhere_is_its_factor() -> None:
 
 def test_at_an_actuator_there_is_no_such_equation() -> None:
     assert straight_line(curve(2.0 * SUN), Actuator("actuator", "torque"), "torque") == ""
+
+
+@pytest.mark.parametrize("name", ["air - wall", "d air/dt", "direction of speed", "angle within a turn"])
+def test_a_signal_that_the_model_has_no_name_for_is_no_equation(name: str) -> None:
+    assert straight_line(curve(2.0 * SUN), ROOM, name) == ""
+    assert straight_line(curve(np.full(61, 360.0), factor=Factor(name, "", 200.0)), ROOM, "air") == ""
+
+
+def test_through_two_places_there_is_always_a_line() -> None:
+    assert straight_line(curve(2.0 * SUN, np.r_[500, np.zeros(8, int), 500]), ROOM, "sun") == ""
