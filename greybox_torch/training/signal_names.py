@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Balance, GreyBoxModel
 from greybox_torch.model.own_rate import RATE
 from greybox_torch.model.ports import Port
 from greybox_torch.model.signals_elsewhere import LEVEL
 from greybox_torch.model.within_turn import TURN_OF
-
-INPUT = "input@"
 
 
 def local_names(model: GreyBoxModel, port: Port, signals: Iterable[str]) -> tuple[str, ...]:

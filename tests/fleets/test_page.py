@@ -81,6 +81,20 @@ def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
 
 
+def test_a_machine_whose_card_was_read_counts_also_where_it_failed() -> None:
+    """Seen: "0 machines" of one whose simulation overflows."""
+
+    def machines(**fields: str) -> str:
+        row = Row("pump", "c.toml", "failed", **{"machine": "pump", **fields})
+        return text_of(render_fleet([row], (), ())).split("Fleet")[-1]
+
+    for fields in ({"failure": "numbers"}, {"failure": "memory"}, {"failure": "killed"}):
+        assert "1 machine: in 0 something is missing from the model; 1 data set failed." in machines(**fields)
+    for fields in ({"title": "Pump"}, {"machine": "P-7"}, {"fingerprint": "ab"}, {"recorded": "2026-05-01"}):
+        assert "1 machine: in 0" in machines(failure="input", **fields)
+    assert "0 machines: in 0" in machines(failure="input")
+
+
 def test_an_unknown_effect_is_not_something_without_a_name(coulomb: Callable[..., Row]) -> None:
     """Seen: "something without a name" of two verdicts with a curve."""
     curve = replace(coulomb("one", None), answer="unknown", effect="an unknown effect at rotor", probability=0.97)
