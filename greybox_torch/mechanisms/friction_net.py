@@ -10,7 +10,7 @@ import torch
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.mechanisms.network import Network, own_name
+from greybox_torch.mechanisms.network import Network, own_name, spoken
 from greybox_torch.mechanisms.sign_change import smooth_sign, width_parameter
 from greybox_torch.model import Parameter, Signals
 
@@ -99,7 +99,7 @@ class FrictionNet(Network):
                 place = 2.0 * (k + rng.uniform()) / self.units - 1.0 if along_speed else rng.uniform(-1.0, 1.0)
                 slope = OVERLAP * (0.5 * self.units if along_speed else 1.0)
                 result.append(
-                    Parameter(f"{own_name(name)}_{k}", slope, "", description=f"slope of bump {k} over {name}")
+                    Parameter(f"{own_name(name)}_{k}", slope, "", description=f"slope of bump {k} over {spoken(name)}")
                 )
                 result.append(
                     Parameter(f"{own_name(name)}_bias_{k}", -slope * place, "", description=f"place of bump {k}")

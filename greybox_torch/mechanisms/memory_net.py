@@ -10,7 +10,7 @@ import torch
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.mechanisms.network import own_name
+from greybox_torch.mechanisms.network import own_name, spoken
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import Parameter, Signals, State
 
@@ -48,7 +48,10 @@ class MemoryNet(ResidualNet):
             for name in self.inputs:
                 result.append(
                     Parameter(
-                        f"a_{own_name(name)}_{j}", float(rng.normal()), "", description=f"{name} in hidden state {j}"
+                        f"a_{own_name(name)}_{j}",
+                        float(rng.normal()),
+                        "",
+                        description=f"{spoken(name)} in hidden state {j}",
                     )
                 )
             for k in range(self.units):
