@@ -64,8 +64,8 @@ def design(
         precision: a free parameter of the recommended model; its standard deviation is made small instead.
         seconds: how long the recording may be; by default what the limits say, else the longest one that there is.
         limits: as the card's table [limits]; by default that table. What it leaves out is limited to what was recorded; an input that was
-            constant in every recording is kept so, and one that is `"recorded"` there, or was never set in steps while others were, is
-            kept as recorded.
+            constant in every recording is kept so, and one that is `"recorded"` there is kept as recorded, and so
+            is one that has no range there and was never set in steps, where others were, have a range or are driven by a controller.
         controller: as the card's table [controller]; by default that table. An empty one is none.
         model: how to load the plain model, where ``found`` is a folder and the card names none.
         seed: draws inputs, their phases and levels.
@@ -91,7 +91,7 @@ def design(
     step = held.data.recordings[0].sample_time
     aim, begins = _begun(_aim(held, precision, loops_for(entries, plain, own, step)), own)
     like = next(r for r in held.data.recordings if r.name == begins.like)
-    own = held_as_in(own, like)
+    own = held_as_in(own, like, step)
     own = replace(own, begin=begun_at(aim.contenders[0], own, step))
     time = step * np.arange(int(np.clip(round(own.seconds / step), 16, MOST_SAMPLES)))
     best = search(aim, own, time, check_seed(seed), progress)

@@ -100,8 +100,9 @@ def _kept(found: DesignResult) -> Iterator[str]:
         yield f"Kept as in {found.begins_like}, as asked for: {listed(asked)}."
     if limits.not_in_steps:
         yield (
-            f"Kept as in {found.begins_like}: {listed(limits.not_in_steps)}, never set in steps, unlike other inputs, and so taken to be "
-            "measured, as weather is. With lower and upper under [limits] an input is designed."
+            f"Kept as in {found.begins_like}: {listed(limits.not_in_steps)}, never set in steps, given a range or driven by a "
+            "controller, unlike other inputs, and so taken to be measured, as weather is. With lower and upper under [limits] "
+            "an input is designed."
         )
     length = min(len(trace) for trace in limits.kept.values())
     again = " (beyond its end, backwards)" if length < len(found.time) else ""

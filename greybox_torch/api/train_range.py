@@ -12,10 +12,10 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.estimate.comparison import Comparison
 from greybox_torch.estimate.problem import all_starts_free, make_problem, problem_for
 from greybox_torch.in_unit import in_unit
+from greybox_torch.mechanisms.network import spoken
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.training import Trained
 from greybox_torch.training.learned_force import visited_signals
-from greybox_torch.training.signal_names import spoken
 
 MARGIN = 0.01
 """Share of the range that was learned over by which a signal may leave it."""

@@ -33,7 +33,12 @@ LONGER = "searching again over longer windows"
 
 
 def find_with_more(
-    first: Selection, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+    first: Selection,
+    model: GreyBoxModel,
+    make_study: MakeStudy,
+    clock: Stopwatch,
+    end: Deadline = Deadline(),
+    given: DataSet | None = None,
 ) -> Findings:
     """``first``, or what is found with more experiments to choose with, where those show what the others do not; judged by free runs.
 
@@ -42,13 +47,15 @@ def find_with_more(
 
     Args:
         end: when all of it has to be known.
+        given: the data set before any experiment was taken to choose with as well; by default that of ``first``.
     """
     judged = partial(judge, clock=clock)
     search = partial(find, model=model, make_study=make_study, clock=clock, end=end)
     begun = _chosen_with(first.dataset)
+    own_ones = _chosen_with(first.dataset if given is None else given)
     known = {begun: judged(first) if end.limited else first}
     while True:
-        best, whole, in_time = _selected(known, begun, search, judged if end.limited else None, end)
+        best, whole, in_time = _selected(known, begun, len(own_ones), search, judged if end.limited else None, end)
         own = best if isinstance(best, Findings) else judged(best)
         if not whole:
             return replace(own, complete=False, others=own.others if in_time else None, cut=(*own.cut, AGAIN))
@@ -60,6 +67,7 @@ def find_with_more(
 def _selected(
     known: dict[tuple[str, ...], Selection],
     begun: tuple[str, ...],
+    given: int,
     search: Callable[..., Selection],
     judged: Callable[[Selection], Findings] | None,
     end: Deadline,
@@ -69,6 +77,7 @@ def _selected(
 
     Args:
         known: by the experiments that are chosen with; what is searched is added.
+        given: how many of them there were before any was taken to choose with as well.
         search: finds a selection on a data set.
         judged: by free runs, what is found; None where that has time.
     """
@@ -76,7 +85,7 @@ def _selected(
     try:
         with until(end):
             while last.complete and last.others is not None:
-                promoted = len(_chosen_with(last.dataset)) - len(begun)
+                promoted = len(_chosen_with(last.dataset)) - given
                 more = _promotion(last, last.others) if promoted < last.study.settings.most_promoted else None
                 if more is None:
                     break
@@ -141,12 +150,18 @@ def _chosen_with(dataset: DataSet) -> tuple[str, ...]:
 
 
 def find_what_is_slow(
-    first: Findings, model: GreyBoxModel, make_study: MakeStudy, clock: Stopwatch, end: Deadline = Deadline()
+    first: Findings,
+    model: GreyBoxModel,
+    make_study: MakeStudy,
+    clock: Stopwatch,
+    end: Deadline = Deadline(),
+    given: DataSet | None = None,
 ) -> Findings:
     """``first``, or what is found over longer windows, where free runs show what the others do not and that explains most of it.
 
     Args:
         end: when all of it has to be known.
+        given: as in :func:`find_with_more`.
     """
     told = without_refinements_alone(first)
     asked = first.complete and first.others is not None
@@ -157,7 +172,7 @@ def find_what_is_slow(
         with until(end):
             first.study.working_on("searching again over longer windows for what acts slowly")
             longer = partial(make_study, budget=budget, more_is_missing=True)
-            last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end)
+            last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end, given)
             found = stands(last.study, *((f.state, f.gains, f.judged) for f in (told, last)))
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))

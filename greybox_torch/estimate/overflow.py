@@ -93,13 +93,15 @@ def suggestions(problem: Problem, simulator: Simulator) -> tuple[Suggestion, ...
     """Parameter values, one changed at a time and within its bounds, with which no experiment overflows: the nearest to the present ones.
 
     Tried on the free parameters, or on all where none is free; empty where no single one helps. One that is zero stays so with any factor:
-    in its place the model's own value is tried at last, or one.
+    in its place the model's own value is tried at last, or one; and where no free one helps, that of the fixed ones that are zero, as a
+    heat capacity of 0 may be.
     """
     tried = np.flatnonzero(problem.free) if problem.free.any() else np.arange(len(problem.names))
     zero, declared = problem.values == 0.0, [p.value for p in problem.model.declared_parameters]
     scaled = [[(int(k), factor * float(problem.values[k])) for k in tried if not zero[k]] for factor in FACTORS]
-    own = [(int(k), declared[k] if np.isfinite(declared[k]) and declared[k] else 1.0) for k in np.flatnonzero(zero)]
-    for candidates in (*scaled, own):
+    own = {int(k): declared[k] if np.isfinite(declared[k]) and declared[k] else 1.0 for k in np.flatnonzero(zero)}
+    zeros = [[(k, value) for k, value in own.items() if (k in tried) == first] for first in (True, False)]
+    for candidates in (*scaled, *zeros):
         rows = [_changed(problem, k, value) for k, value in candidates]
         allowed = [i for i, row in enumerate(rows) if _allowed(problem, row)]
         finite = _finite(problem, simulator, np.array([rows[i] for i in allowed])) if allowed else []

@@ -115,7 +115,7 @@ def limits_of(
         n: _range(_own(given, n, open_ones), f"{place} {n}", _recorded(data, n, 0.0), may_rest=True) for n in inputs
     }
     held = tuple(n for n in open_ones if not has_range(given.get(n)) and _constant(data, n))
-    kept = as_recorded(data, [n for n in open_ones if n not in held], given)
+    kept = as_recorded(data, [n for n in open_ones if n not in held], given, driven=bool(follows))
     found = Limits(
         seconds,
         ranges,
@@ -125,19 +125,23 @@ def limits_of(
         {} if START in signals else _start(given.get(START, {}), sorted(own), f"{place} {START}"),
         recorded=tuple(n for n in (*inputs, *outputs) if n not in given and n not in (*held, *kept)),
         held=held,
-        kept=traces_of(data.recordings[0], kept),
+        kept=dict.fromkeys(kept, np.empty(0)),
         not_in_steps=tuple(n for n in kept if given.get(n) != AS_RECORDED),
     )
-    return held_as_in(found, data.recordings[0])
+    return held_as_in(found, data.recordings[0], data.recordings[0].sample_time)
 
 
-def held_as_in(limits: Limits, recording: Recording) -> Limits:
-    """The limits with the inputs that are ``held`` or ``kept`` as they were in a recording: the one that the next begins like."""
+def held_as_in(limits: Limits, recording: Recording, step: float) -> Limits:
+    """The limits with the inputs that are ``held`` or ``kept`` as they were in a recording: the one that the next begins like.
+
+    Args:
+        step: the sample time of the next one, s.
+    """
     at = {name: float(np.nanmedian(recording.signals[name])) for name in limits.held}
     return replace(
         limits,
         inputs=dict(limits.inputs) | {n: replace(limits.inputs[n], lower=v, upper=v) for n, v in at.items()},
-        kept=traces_of(recording, list(limits.kept)),
+        kept=traces_of(recording, list(limits.kept), step),
     )
 
 

@@ -120,7 +120,7 @@ def render_fleet(
 
 def _headline(rows: Sequence[Row], courses: Sequence[History], counts: Counter[str]) -> str:
     # of a card that cannot be read no machine is known
-    machines = len({row.machine for row in rows if not row.failed})
+    machines = len({row.machine for row in rows if row.card_read})
     missing = len({row.machine for row in rows if row.answer in ("named", "unknown")})
     parts = [f"{machines} machine{'s' * (machines != 1)}: in {missing} something is missing from the model"]
     tested = [c for c in courses if c.tested]

@@ -63,6 +63,12 @@ class Row:
         return self.answer == "failed"
 
     @property
+    def card_read(self) -> bool:
+        """Whether the card could be read, which says of which machine it is: what fails behind it leaves something of it in the row."""
+        told = self.title or self.recorded or self.fingerprint or self.machine != self.dataset
+        return self.failure != "input" or bool(told)
+
+    @property
     def day(self) -> float:
         """Days since 1970-01-01 when it was recorded, minus infinity where that is not known; a date without a zone is taken as of UTC."""
         if not self.recorded:

@@ -10,7 +10,7 @@ import torch
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.mechanisms.network import Network
+from greybox_torch.mechanisms.network import Network, own_name, spoken
 from greybox_torch.mechanisms.sign_change import smooth_sign, width_parameter
 from greybox_torch.model import Parameter, Signals
 
@@ -84,7 +84,9 @@ class FrictionNet(Network):
     def _bump(self, sigma: dict[str, Any], p: Signals, k: int) -> Any:
         product: Any = 1.0
         for name in self.inputs:
-            product = product * torch.exp(-((p[f"{name}_{k}"] * sigma[name] + p[f"{name}_bias_{k}"]) ** 2))
+            product = product * torch.exp(
+                -((p[f"{own_name(name)}_{k}"] * sigma[name] + p[f"{own_name(name)}_bias_{k}"]) ** 2)
+            )
         return product
 
     def _bumps(self) -> list[Parameter]:
@@ -96,6 +98,10 @@ class FrictionNet(Network):
                 along_speed = name == "speed"
                 place = 2.0 * (k + rng.uniform()) / self.units - 1.0 if along_speed else rng.uniform(-1.0, 1.0)
                 slope = OVERLAP * (0.5 * self.units if along_speed else 1.0)
-                result.append(Parameter(f"{name}_{k}", slope, "", description=f"slope of bump {k} over {name}"))
-                result.append(Parameter(f"{name}_bias_{k}", -slope * place, "", description=f"place of bump {k}"))
+                result.append(
+                    Parameter(f"{own_name(name)}_{k}", slope, "", description=f"slope of bump {k} over {spoken(name)}")
+                )
+                result.append(
+                    Parameter(f"{own_name(name)}_bias_{k}", -slope * place, "", description=f"place of bump {k}")
+                )
         return result

@@ -10,6 +10,7 @@ import torch
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.network import own_name, spoken
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import Parameter, Signals, State
 
@@ -46,7 +47,12 @@ class MemoryNet(ResidualNet):
             result.append(Parameter(f"c_{j}", 0.0, "", description=f"bias of hidden state {j}"))
             for name in self.inputs:
                 result.append(
-                    Parameter(f"a_{name}_{j}", float(rng.normal()), "", description=f"{name} in hidden state {j}")
+                    Parameter(
+                        f"a_{own_name(name)}_{j}",
+                        float(rng.normal()),
+                        "",
+                        description=f"{spoken(name)} in hidden state {j}",
+                    )
                 )
             for k in range(self.units):
                 result.append(
@@ -61,7 +67,8 @@ class MemoryNet(ResidualNet):
         sigma = self.scaled(s, p)
         return {
             f"h_{j}": (
-                torch.tanh(p[f"c_{j}"] + sum(p[f"a_{name}_{j}"] * sigma[name] for name in self.inputs)) - z[f"h_{j}"]
+                torch.tanh(p[f"c_{j}"] + sum(p[f"a_{own_name(name)}_{j}"] * sigma[name] for name in self.inputs))
+                - z[f"h_{j}"]
             )
             / p[f"T_{j}"]
             for j in range(self.memories)

@@ -13,6 +13,7 @@ import numpy as np
 
 from greybox_torch.errors import UserError
 from greybox_torch.mechanisms.mechanism import Mechanism, Probe, Surroundings
+from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Parameter, Signals
 
 MOST_UNITS = 256
@@ -21,6 +22,14 @@ MOST_UNITS = 256
 def own_name(signal: str) -> str:
     """What parameters are called by that belong to a signal: of one from elsewhere in the model without the sign in its name."""
     return signal.replace("@", "_")
+
+
+def spoken(signal: str) -> str:
+    """A signal as it is told: an input by its name, that of another port with the port's."""
+    if signal.startswith(INPUT):
+        return signal.removeprefix(INPUT)
+    name, _, port = signal.partition("@")
+    return f"{name} of {port}" if port else name
 
 
 class Network(Mechanism):
@@ -65,11 +74,17 @@ class Network(Mechanism):
             unit, half = around.units.get(name, ""), max(0.5 * (high - low), 1e-9 * max(abs(low), abs(high), 1e-3))
             result.append(
                 Parameter(
-                    f"{own_name(name)}_centre", 0.5 * (low + high), unit, fixed=True, description=f"middle of {name}"
+                    f"{own_name(name)}_centre",
+                    0.5 * (low + high),
+                    unit,
+                    fixed=True,
+                    description=f"middle of {spoken(name)}",
                 )
             )
             result.append(
-                Parameter(f"{own_name(name)}_scale", half, unit, fixed=True, description=f"half the range of {name}")
+                Parameter(
+                    f"{own_name(name)}_scale", half, unit, fixed=True, description=f"half the range of {spoken(name)}"
+                )
             )
         return result
 
@@ -98,7 +113,9 @@ class Network(Mechanism):
             slopes = max(1.0, 0.4 * self.units) * direction / np.linalg.norm(direction)
             for name, slope in zip(self.inputs, slopes, strict=True):
                 result.append(
-                    Parameter(f"{own_name(name)}_{k}", float(slope), "", description=f"weight of {name} in unit {k}")
+                    Parameter(
+                        f"{own_name(name)}_{k}", float(slope), "", description=f"weight of {spoken(name)} in unit {k}"
+                    )
                 )
             result.append(Parameter(f"bias_{k}", -float(slopes @ place), "", description=f"bias of unit {k}"))
         return result

@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
-from greybox_torch.training.signal_names import INPUT, local_names, readable, spoken
+from greybox_torch.training.signal_names import local_names, readable, told_names
 
 NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet, "memory": MemoryNet}
 """By the name that users choose them by."""
@@ -136,14 +136,16 @@ def port_named(model: GreyBoxModel, name: str) -> Port:
     return ports[name]
 
 
-def check_signals(network: Mechanism, port: Port, around: Surroundings) -> None:
-    """Raises UserError where ``network`` reads a signal that there is not around ``port``."""
+def check_signals(network: Mechanism, model: GreyBoxModel, port: Port, around: Surroundings) -> None:
+    """Raises UserError where ``network`` reads a signal that there is not around ``port`` of ``model``."""
     known = readable(around)
-    for signal in network.needs:
+    for signal, asked in zip(network.needs, told_names(model, port, network.needs), strict=True):
         if signal not in known:
-            told = [spoken(name) if name.startswith(INPUT) else name for name in known]
-            problem = f"there is no such signal at {port.name}{did_you_mean(signal, told)}; there is: {', '.join(told)}"
-            raise ArgumentError("signals", signal, problem)
+            told = told_names(model, port, known)
+            also = (state for name, state in port.signals.items() if name in known and isinstance(state, str))
+            hint = did_you_mean(asked, (*told, *also))
+            problem = f"there is no such signal at {port.name}{hint}; there is: {', '.join(told)}"
+            raise ArgumentError("signals", asked, problem)
 
 
 def attach_network(
@@ -164,7 +166,7 @@ def attach_network(
         UserError: there is no such port, or no such signal there.
     """
     site = port_named(physics.model, port)
-    check_signals(network, site, surroundings[site.name])
+    check_signals(network, physics.model.plain, site, surroundings[site.name])
     attachments = (*others, attach(physics.model, port, network))
     model = AugmentedModel(physics.model, attachments, surroundings)
     return Hybrid(problem_for(physics, model, {}), attachments, surroundings)

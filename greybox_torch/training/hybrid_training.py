@@ -30,6 +30,7 @@ from greybox_torch.training.keeper import Keeper
 from greybox_torch.training.physics import Physics, estimate_physics, training_problem, with_physics
 from greybox_torch.training.polish import Polished, polish
 from greybox_torch.training.settings import TrainingSettings
+from greybox_torch.training.signal_names import readable
 from greybox_torch.training.snapshot import Snapshot, check_snapshot, check_unknowns, load_snapshot
 from greybox_torch.training.stages import fitted_starts, held_out_samples, stage, window_lengths
 from greybox_torch.training.state import TrainingState
@@ -135,8 +136,8 @@ def _check_signals_early(problem: Problem, plain: Simulator, site: Port, learner
         around = survey(problem.model, problem, plain)[site.name]
     except NumericalError:
         return
-    if not set(learner.needs) <= {*around.ranges, "load"}:
-        check_signals(learner, site, around)
+    if not set(learner.needs) <= {*readable(around), "load"}:
+        check_signals(learner, problem.model.plain, site, around)
 
 
 def _path(snapshot: Path | None) -> Path:

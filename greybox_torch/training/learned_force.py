@@ -12,9 +12,9 @@ from greybox_torch.estimate.free_run import FreeRun, visited_states
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import uncertainty
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.network import spoken
 from greybox_torch.model import Signals
 from greybox_torch.training.polish import PenalisedRun
-from greybox_torch.training.signal_names import spoken
 from greybox_torch.training.trained import Trained
 
 MOST_SAMPLES = 4000

@@ -5,34 +5,40 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from greybox_torch.mechanisms.mechanism import Surroundings
-from greybox_torch.model import Balance, GreyBoxModel
+from greybox_torch.mechanisms.unknown import INPUT
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.along_motion import DIRECTION
 from greybox_torch.model.own_rate import RATE
 from greybox_torch.model.ports import Port
-from greybox_torch.model.signals_elsewhere import LEVEL
+from greybox_torch.model.signals_elsewhere import DIFFERENCE, signals_elsewhere
 from greybox_torch.model.within_turn import TURN_OF
-
-INPUT = "input@"
 
 
 def local_names(model: GreyBoxModel, port: Port, signals: Iterable[str]) -> tuple[str, ...]:
     """The ``signals`` by the names that laws at ``port`` know. A name of the port goes before one of the model, and what is neither is
     left as it is.
     """
-    levels = {q.level: f"{LEVEL}{q.name}" for q in model.ports if isinstance(q, Balance) and isinstance(q.level, str)}
+    elsewhere = {theirs: name for name, theirs in _of_the_model(model, port).items()}
     own = {signal: name for name, signal in port.signals.items() if isinstance(signal, str)}
-    inputs = {i.name: f"{INPUT}{i.name}" for i in model.inputs}
-    known = {**inputs, **levels, **own, **{name: name for name in port.signals}}
+    known = {**elsewhere, **own, **{name: name for name in port.signals}}
     return tuple(known.get(signal, signal) for signal in signals)
 
 
+def told_names(model: GreyBoxModel, port: Port, signals: Iterable[str]) -> tuple[str, ...]:
+    """The reverse of :func:`local_names`: inputs and states at other ports by the names of the model, unless the port has such a name."""
+    theirs = _of_the_model(model, port)
+    told = {name: one for name, one in theirs.items() if local_names(model, port, (one,)) == (name,)}
+    return tuple(told.get(signal, signal) for signal in signals)
+
+
+def _of_the_model(model: GreyBoxModel, port: Port) -> dict[str, str]:
+    """By the names that laws at ``port`` know, the model's own ones of its inputs and of the states at other ports."""
+    elsewhere = {name: signal for name, signal in signals_elsewhere(model, port).items() if isinstance(signal, str)}
+    return {**{f"{INPUT}{i.name}": i.name for i in model.inputs}, **elsewhere}
+
+
 def readable(around: Surroundings) -> list[str]:
-    """What a network may read at a port, by the names that laws know: no rate, which it changes itself."""
-    return [n for n in around.ranges if n != "delayed" and not n.startswith((RATE, TURN_OF))]
-
-
-def spoken(signal: str) -> str:
-    """A signal as it is told: an input by its name, that of another port with the port's."""
-    if signal.startswith(INPUT):
-        return signal.removeprefix(INPUT)
-    name, _, port = signal.partition("@")
-    return f"{name} of {port}" if port else name
+    """What a network may read at a port, by the names that laws know: no rate, which it changes itself; no difference from another level,
+    as it would act on one of the two alone; no mere direction.
+    """
+    return [n for n in around.ranges if n != "delayed" and not n.startswith((RATE, TURN_OF, DIFFERENCE, DIRECTION))]

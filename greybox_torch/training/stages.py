@@ -74,15 +74,17 @@ def held_out_samples(records: Records, longest: int, settings: TrainingSettings)
     """Which samples (N,) of the records no step is taken on: stretches of ``longest`` samples, drawn with the seed.
 
     None begins an experiment: what is measured behind it hardly determines the start states, and a free run from any others says nothing of
-    the model. Seen: a building zone of rms 1.5 °C, of which the physics alone "ran away" by 280 °C.
+    the model. Seen: a building zone of rms 1.5 °C, of which the physics alone "ran away" by 280 °C. One that begins none is left to learn
+    on, if there is a second, or nothing late in an experiment would ever be seen.
     """
     windows = cut(records, longest)
     count, begins = len(windows.start), np.isin(windows.start, records.first)
     draw = np.random.default_rng([settings.seed, 1])
     chosen = draw.choice(count, min(max(1, round(settings.held_out * count)), count - 1), replace=False)
-    kept = chosen[~begins[chosen]]
+    most = max(1, int((~begins).sum()) - 1)
+    kept = chosen[~begins[chosen]][:most]
     others = np.setdiff1d(np.flatnonzero(~begins), kept)
-    further = draw.choice(others, min(len(chosen) - len(kept), len(others)), replace=False)
+    further = draw.choice(others, min(len(chosen), most, len(kept) + len(others)) - len(kept), replace=False)
     chosen = np.concatenate([kept, further])
     mask = np.zeros(records.y.shape[1], dtype=bool)
     for k in chosen:

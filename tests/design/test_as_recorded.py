@@ -10,7 +10,7 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.errors import UserError
 from greybox_torch.experiment_design.approach import begun_there
-from greybox_torch.experiment_design.as_recorded import as_recorded, continued
+from greybox_torch.experiment_design.as_recorded import as_recorded, continued, traces_of
 from greybox_torch.experiment_design.limits import Range, limits_of
 
 TIME: np.ndarray = 0.01 * np.arange(300)
@@ -33,6 +33,25 @@ def test_what_was_never_set_in_steps_is_kept_where_other_inputs_were(zone) -> No
     assert as_recorded(zone, ["outside", "sun"], {}) == ()  # nothing shows which of them is set
 
 
+def test_an_input_with_a_range_or_under_a_loop_is_set(zone) -> None:
+    """Seen: an outside temperature that was to follow a triangle wave, since the heater had its limits."""
+    assert as_recorded(zone, ["heater", "outside", "sun"], {"heater": {"lower": 0, "upper": 4}}) == ("outside", "sun")
+    assert as_recorded(zone, ["outside", "sun"], {}, driven=True) == ("outside", "sun")
+    assert as_recorded(zone, ["outside", "sun"], {"sun": {"upper": 1.0}}, driven=True) == ("outside",)
+
+
+def test_a_trace_has_the_step_of_the_next_recording() -> None:
+    """Seen: weather sampled every 60 s that ran a sixth as fast, 10 s to a sample."""
+    time = np.array([7.0, 8.0, 9.0, 12.0, 13.0])  # a gap
+    values = np.array([0.0, 1.0, np.nan, 5.0, 4.0])
+    recording = gt.Recording.from_arrays(
+        "day", {"outside": np.append(values, [3] * 5), "y": np.ones(10)}, time=[*time, *range(14, 19)]
+    )
+    assert traces_of(recording, ["outside"], 1.0)["outside"].tolist() == [0, 1, 2, 3, 4, 5, 4, 3, 3, 3, 3, 3]
+    assert traces_of(recording, ["outside"], 2.0)["outside"].tolist() == [0, 2, 4, 4, 3, 3]
+    assert traces_of(recording, ["outside"], 0.5)["outside"][:4].tolist() == [0, 0.5, 1, 1.5]
+
+
 def test_a_trace_is_continued_without_a_jump() -> None:
     assert continued(np.array([0.0, 1.0, 2.0]), 8).tolist() == [0, 1, 2, 1, 0, 1, 2, 1]
     assert continued(np.array([3.0]), 2).tolist() == [3.0, 3.0]
@@ -51,7 +70,9 @@ def test_an_input_as_recorded(undecided) -> None:
         in notes
     )
     unasked = replace(found, limits=replace(found.limits, not_in_steps=("voltage",)))
-    assert any("Kept as in steps: voltage, never set in steps, unlike other inputs" in line for line in unasked.notes)
+    assert any(
+        "Kept as in steps: voltage, never set in steps, given a range or driven" in line for line in unasked.notes
+    )
 
 
 def test_an_output_is_never_as_recorded(undecided) -> None:

@@ -48,7 +48,7 @@ def test_an_input_that_was_constant_is_kept_so(constant, motor) -> None:
     """Seen: a rope's length, 0.9 m in one recording and 1.3 m in another, that was to move with 2 Hz."""
     found = limits_of(constant, motor, {"voltage": {"rate": 2.0}}, "[limits]")
     assert found.held == ("voltage",) and found.designed == [] and "voltage" not in found.recorded
-    at = held_as_in(found, constant.recordings[1]).inputs["voltage"]
+    at = held_as_in(found, constant.recordings[1], 0.01).inputs["voltage"]
     assert at.lower == at.upper == pytest.approx(1.3) and at.rate == 2.0
     free = limits_of(constant, motor, {"voltage": {"lower": 0.5}}, "[limits]")
     assert free.held == () and free.inputs["voltage"].upper == pytest.approx(1.3) and free.designed == ["voltage"]

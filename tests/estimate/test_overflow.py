@@ -84,6 +84,28 @@ def test_a_parameter_of_zero_is_tried_with_the_models_own_value(problem: Problem
     assert str(found) == "b = 1 (now 0)"
 
 
+class DividedTwice(Growth):
+    """max(b, c) dx/dt = -a x."""
+
+    parameters = [Parameter("a", 400.0, unit="1/s"), Parameter("b", 1.0), Parameter("c", 1.0)]
+
+    def derivative(self, x: Any, u: Any, p: Any, port: Any) -> dict[str, Any]:
+        return {"speed": -p.a * x.speed / torch.maximum(p.b, p.c)}
+
+
+def test_a_parameter_that_is_fixed_at_zero_is_tried_last(data_set: Any, problem: Problem) -> None:
+    """Seen: a friction that was fixed at 0 on purpose was proposed as 1."""
+    data = data_set({"voltage": "V", "speed": "rad/s"}, [{"voltage": np.zeros(30), "speed": np.zeros(30)}])
+    own = make_problem(data, DividedTwice(), data.recordings).with_values(np.zeros(3))
+    simulator = Simulator.of(own.model, own.free_names)
+    assert [s.name for s in suggestions(own, simulator)] == ["b", "c"]
+    for fixed, proposed in (("b", ["c"]), ("c", ["b"])):
+        held = replace(own, free=np.array([name != fixed for name in own.names]))
+        assert [s.name for s in suggestions(held, simulator)] == proposed
+    held = replace(own, free=np.array([name == "a" for name in own.names]))
+    assert [s.name for s in suggestions(held, simulator)] == ["b", "c"], "no free one avoids it"
+
+
 def make_narrow(problem: Problem) -> Problem:
     return replace(problem, lower=np.array([1e6, 0.5]), upper=np.array([1e7, 2.0]))
 

@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -79,6 +80,20 @@ def test_a_fleet_without_dates_or_verdicts(coulomb: Callable[..., Row]) -> None:
     told = text_of(render_fleet([unfinished], (), ()))
     assert "0.50" not in told and "0.00074" not in told and "under 0.1" in told
     assert "0 machines: in 0 something is missing" in text_of(render_fleet([], (), ()))
+
+
+def test_a_machine_whose_card_was_read_counts_also_where_it_failed() -> None:
+    """Seen: "0 machines" of one whose simulation overflows."""
+
+    def machines(**fields: Any) -> str:
+        row = Row("pump", "c.toml", "failed", **{"machine": "pump", **fields})
+        return text_of(render_fleet([row], (), ()))
+
+    for fields in ({"failure": "numbers"}, {"failure": "memory"}, {"failure": "killed"}):
+        assert "1 machine: in 0 something is missing from the model; 1 data set failed." in machines(**fields)
+    for fields in ({"title": "Pump"}, {"machine": "P-7"}, {"fingerprint": "ab"}, {"recorded": "2026-05-01"}):
+        assert "1 machine: in 0" in machines(failure="input", **fields)
+    assert "0 machines: in 0" in machines(failure="input")
 
 
 def test_an_unknown_effect_is_not_something_without_a_name(coulomb: Callable[..., Row]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -143,6 +144,25 @@ def arm_records(samples: int = 60) -> Records:
     torque = 5.0 * np.sin(40.0 * t) + np.sin(2 * np.pi * 19 * t)
     dt, ends = np.full(samples, 5e-4), (np.array([0]), np.array([samples - 1]))
     return Records(torque[None], np.zeros((1, samples)), dt, *ends, ("",), "zoh")
+
+
+@pytest.mark.parametrize(
+    "net",
+    [
+        FrictionNet(("speed", "input@sun"), units=2),
+        FrictionNet(("speed", "input@sun"), units=2, dissipative=False),
+        ResidualNet(("speed", "input@sun"), units=2),
+        MemoryNet(("speed", "input@sun"), units=2, memories=2),
+    ],
+)
+def test_parameters_over_signals_from_elsewhere_have_names_of_their_own(net: Network) -> None:
+    """Seen: "input@sun_0" beside "input_sun_centre"."""
+    around = replace(AROUND, ranges={**RANGES, "input@sun": Range(0.0, 800.0, 300.0)})
+    names = [p.name for p in net.parameters(around)]
+    assert "input_sun_centre" in names and not [name for name in names if "@" in name]
+    values = {p.name: p.value + 0.1 for p in net.parameters(around)}
+    dark, bright = (force(net, values, **{"speed": 3.0, "input@sun": sun}) for sun in (0.0, 800.0))
+    assert np.isfinite(dark) and dark != bright
 
 
 PLACES = [

@@ -77,6 +77,17 @@ def test_no_stretch_that_is_held_out_begins_an_experiment(table_problem: Problem
     assert held_out_samples(records, 1000, TrainingSettings()).sum() == 600, "all but one stretch begin an experiment"
 
 
+def test_a_stretch_that_begins_no_experiment_is_left_to_learn_on(table_problem: Problem) -> None:
+    """Seen: one long and many short experiments, of which every stretch that begins none was held out."""
+    lengths = np.array([400] + [100] * 20)
+    first = np.concatenate([[0], np.cumsum(lengths)[:-1]])
+    y = np.zeros((1, lengths.sum()))
+    records = replace(table_problem.records, u=y, y=y, dt=y[0] + 0.01, first=first, last=first + lengths - 1)
+    for seed in range(50):
+        mask = held_out_samples(records, 100, TrainingSettings(seed=seed))
+        assert mask.sum() == 200 and not mask[first].any()
+
+
 @pytest.mark.parametrize("gradient", ["recomputation", "odeint_adjoint"])
 def test_other_gradients_take_the_same_way(gradient: str, data_set, table_data) -> None:
     """One epoch of each window length on a short record leads where the tangents lead."""
