@@ -22,6 +22,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.errors import UserError
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.mechanisms.attached import attached
+from greybox_torch.mechanisms.network import own_name
 from greybox_torch.mechanisms.stored import restored_model
 from greybox_torch.model import GreyBoxModel, Parameter
 from greybox_torch.model.copies import copy_holding
@@ -122,13 +123,23 @@ def _plain_model(path: Path, checkpoint: Checkpoint, model: GreyBoxModel | str |
 
 
 def _saved(path: Path, checkpoint: Checkpoint, model: GreyBoxModel) -> SavedModel:
-    checkpoint = _with_later_parameters(checkpoint, model)
+    checkpoint = _with_later_parameters(_with_present_names(checkpoint, model), model)
     check_same_parameters(path, checkpoint, model.title, [p.name for p in model.declared_parameters])
     check_same_units(path, checkpoint, model.title, {p.name: p.unit for p in model.plain.declared_parameters})
     check_same_weights(path, checkpoint, model.title, digest(model))
     held = copy_holding(model, checkpoint.values, starts_free=checkpoint.free_starts)
     _check_admissible(path, held)
     return SavedModel(checkpoint, held.plain, held)
+
+
+def _with_present_names(checkpoint: Checkpoint, model: GreyBoxModel) -> Checkpoint:
+    """The checkpoint with the names that parameters have now: a network's of a signal from elsewhere had the sign in that signal's name."""
+    present = {p.name for p in model.declared_parameters}
+    named = {name: own_name(name) for name in checkpoint.values if name not in present and own_name(name) in present}
+    if not named:
+        return checkpoint
+    values = {named.get(name, name): value for name, value in checkpoint.values.items()}
+    return replace(checkpoint, values=values, units={named.get(n, n): unit for n, unit in checkpoint.units.items()})
 
 
 def _with_later_parameters(checkpoint: Checkpoint, model: GreyBoxModel) -> Checkpoint:

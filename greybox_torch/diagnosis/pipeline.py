@@ -122,7 +122,7 @@ def diagnose(
     )
     before_writing = Deadline(end.at - budget.seconds_for_writing)
     found = find_with_more(find(dataset, model, make_study, clock, end), model, make_study, clock, before_writing)
-    found = find_what_is_slow(found, model, make_study, clock, before_writing)
+    found = find_what_is_slow(found, model, make_study, clock, before_writing, dataset)
     with until(before_writing):
         found, _ = or_else(partial(with_common_gain, found), lambda: found)
     told = partial(_diagnosis, found, dataset, model, seed, clock)
