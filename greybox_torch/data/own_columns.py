@@ -28,13 +28,14 @@ def _with(entry: ChannelEntry, own: OwnColumn) -> ChannelEntry:
     converted = {name: value for name in ("scale", "file_unit") if (value := getattr(own, name)) is not None}
     if converted:
         kept = {name: value for name, value in kept.items() if name not in ("scale", "file_unit")}
-    return ChannelEntry.model_validate(kept | converted | {"column": own.column})
+    source = {"column": own.column} if own.expr is None else {"expr": own.expr}
+    return ChannelEntry.model_validate(kept | converted | source)
 
 
 def wrong_in(name: str, own: OwnColumn, entry: ChannelEntry | None) -> str:
     """What is wrong with an experiment's own column of a channel, or of the time stamps (without an ``entry``); "" where nothing is."""
     if entry is None:
-        given = [key for key in ("file_unit", "scale") if getattr(own, key) is not None]
+        given = [key for key in ("expr", "file_unit", "scale") if getattr(own, key) is not None]
         expected = '{ column = "t", unit = "ms" } of time stamps'
         if own.unit is not None and own.unit not in _UNITS:
             return f'found unit = "{own.unit}", expected {" ".join(_UNITS)}'
