@@ -6,8 +6,21 @@ from collections.abc import Mapping
 from typing import get_args
 
 from greybox_torch.data.card_channels import ChannelEntry, OwnColumn, TimeEntry
+from greybox_torch.files import toml_key, toml_text
 
 _UNITS: tuple[str, ...] = get_args(TimeEntry.model_fields["unit"].annotation)
+
+
+def in_that_experiment(name: str, entry: str) -> str:
+    """What to write for a channel, or the time stamps, of one experiment alone; ``entry`` are keys with their values."""
+    return f"columns = {{ {toml_key(name)} = {{ {entry} }} }} in that [[experiment]]"
+
+
+def conversion_written(name: str, column: str, keys: str, *, own: bool) -> str:
+    """How to write ``keys`` that convert a channel: in its line as they are, or where the column is one experiment's ``own``, there."""
+    if not own:
+        return keys
+    return in_that_experiment(name, keys if keys.startswith("expr") else f"column = {toml_text(column)}, {keys}")
 
 
 def own_time(time: TimeEntry, own: OwnColumn | None) -> TimeEntry:

@@ -59,6 +59,25 @@ def test_a_conversion_of_its_own_takes_the_place_of_the_channels(folder: Path) -
 
 
 @pytest.mark.parametrize(
+    ("units", "write"),
+    [
+        (("s", "s"), 'columns = { time = { column = "t", unit = "ms" } } in [[experiment]] "a"'),
+        (("ms", "ms"), 'columns = { time = { column = "time_s", unit = "s" } } in [[experiment]] "b"'),
+        (("us", "us"), 'columns = { time = { column = "time_s", unit = "ms" } } in [[experiment]] "b"'),
+        (("s", "h"), ""),
+    ],
+)
+def test_the_experiment_in_the_wrong_unit_of_time_is_named(folder: Path, units: tuple[str, str], write: str) -> None:
+    """Seen: the advice was for the experiment that was right, and to write what it had."""
+    path = card(folder, f'{{ time = {{ column = "time_s", unit = "{units[1]}" }}, n = "k" }}')
+    path.write_text(
+        path.read_text().replace('{ column = "t", unit = "ms" }', f'{{ column = "t", unit = "{units[0]}" }}')
+    )
+    odd = list(odd_time_stamps(load_dataset(path), {}))
+    assert [one.write for one in odd] == ([write] if write else [])
+
+
+@pytest.mark.parametrize(
     ("columns", "message"),
     [
         (

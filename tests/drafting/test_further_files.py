@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 
 import greybox_torch as gt
-from greybox_torch.drafting.likened import likened
+from greybox_torch.drafting.likened import likened, of_the_same_last_name
 
 N = 100
 T = 0.02 * np.arange(N)
@@ -66,6 +66,10 @@ def test_a_unit_that_follows_the_letter_of_an_output_is_converted(tmp_path: Path
 )
 def test_columns_with_one_ending_or_beginning(columns: list[str], found: dict[str, str]) -> None:
     assert likened({"v": "u", "w": "y"}, columns) == found
+
+
+def test_one_column_is_not_taken_for_two_channels() -> None:
+    assert of_the_same_last_name({"a": "x.v", "b": "y.v", "c": "x.w"}, {}, ["z.v", "z.w"]) == {"c": "z.w"}
 
 
 def test_the_first_column_of_a_matrix_may_be_the_time(tmp_path: Path) -> None:
