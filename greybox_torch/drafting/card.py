@@ -189,7 +189,7 @@ def _gap(gap: Gap | None, rows: tuple[int, int]) -> list[str]:
     if gap.of_summer_time:
         return [
             f"# {gap.in_brief}: as where local time is set to summer time.",
-            f"# Then nothing is missing: {instead_of_summer_time(gap.step)}.",
+            f"# Then nothing is missing: give {instead_of_summer_time(gap.step)}.",
         ]
     return [
         f"# {gap.in_brief}: a simulation across it would hold the last input.",

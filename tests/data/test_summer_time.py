@@ -50,7 +50,10 @@ def test_an_hour_left_out_in_spring(tmp_path: Path, step: int, start: str, last:
     assert "as where local time is set to summer time; then nothing is missing" in told.found
     assert f"sample_time = {60 * step} in the place of time" in told.write
     text = gt.card(tmp_path / "night.csv").text
-    assert "local time is set to summer time" in text and "Write two experiments" not in text
+    assert (
+        "set to summer time.\n# Then nothing is missing: give time stamps in UTC" in text
+        and "Write two experiments" not in text
+    )
     path.write_text(CARD.replace('time = "Timestamp"', f"sample_time = {60.0 * step}"))
     assert not any("gap" in w.found for w in data_warnings(gt.load_dataset(path), None))
 
