@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import greybox_torch as gt
 from greybox_torch.data import load_dataset
+from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
 from greybox_torch.errors import UserError
 
@@ -54,6 +57,34 @@ def test_dates_in_a_column_of_their_own(tmp_path: Path) -> None:
     path.write_text(CARD.replace('"t"', '{ column = "t", date = "d" }'))
     time = np.concatenate([recording.time for recording in load_dataset(path).recordings])
     assert np.ptp(time) == pytest.approx(119 * 60.0)
+
+
+@pytest.mark.parametrize("ending", ["csv", "json", "memory"])
+def test_what_was_concluded_is_told(tmp_path: Path, ending: str) -> None:
+    """Seen: of a file in JSON and of data in memory, and on the card, not a word."""
+    stamps = [f"{day:02}/04/2026 {hour:02}:00" for day in (3, 4) for hour in range(24)]
+    note = 'dates such as "03/04/2026" are read with the day before month, as they follow each other so'
+    if ending == "memory":
+        run = gt.Recording.from_arrays("run", {"u": np.arange(48.0)}, time=stamps)
+        assert run.notes == (f"time: {note}",)
+        return
+    file, rows = tmp_path / f"run.{ending}", list(zip(stamps, range(48), strict=True))
+    as_text = {
+        "csv": "\n".join(["t,u", *(f"{t},{u}" for t, u in rows)]),
+        "json": json.dumps([{"t": t, "u": u} for t, u in rows]),
+    }
+    file.write_text(as_text[ending])
+    text = gt.card(file).text
+    (line,) = (line for line in text.splitlines() if line.startswith('time = "t"'))
+    assert line.endswith(f"; {note}")
+    (tmp_path / "dataset.toml").write_text(CARD.split("file")[0] + f'file = "run.{ending}"\n')
+    assert f'column "t" of run.{ending}: {note}' in load_dataset(tmp_path / "dataset.toml").recordings[0].notes
+
+
+def test_a_date_in_json_that_is_none(tmp_path: Path) -> None:
+    (tmp_path / "run.json").write_text(json.dumps([{"t": t, "u": 1} for t in ("12/31/2026", "12/32/2026")]))
+    with pytest.raises(UserError, match=r'"t", sample 1 \(the first is 0\): found "12/32/2026": no such date'):
+        read_table(tmp_path / "run.json", ["t"])
 
 
 @pytest.mark.parametrize("second", ["08/09/2026", "2026-05-04"])

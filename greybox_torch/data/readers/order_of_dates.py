@@ -21,11 +21,13 @@ class OrderOfDates:
 
     Attributes:
         day_first: whether the day comes before the month; None where nothing tells.
+        note: what was concluded from dates that follow each other; else empty.
         day: how long a day is in the unit of the column.
     """
 
     date: str
     day_first: bool | None
+    note: str = ""
     day: float = DAY
 
     @property

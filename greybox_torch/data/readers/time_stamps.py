@@ -142,7 +142,7 @@ class TimeStamps:
             self.day_first = within[0]
             order = "day before month" if within[0] else "month before day"
             self.note = f'dates such as "{dated[0][1]}" are read with the {order}, as they follow each other so'
-        self.order = OrderOfDates(dated[0][1], self.day_first)
+        self.order = OrderOfDates(dated[0][1], self.day_first, self.note)
 
 
 def is_time_stamp(text: str) -> bool:
