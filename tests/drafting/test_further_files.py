@@ -133,6 +133,10 @@ def test_units_of_further_files_that_are_not_those_of_the_first(tmp_path: Path) 
         'angle = { column = "log.angle", file_unit = "rad" }, time = { column = "log.t", unit = "s" }' in drafted.text
     )
     assert 'voltage = { column = "voltage [mV]", file_unit = "mV" }' in drafted.text and 'time = "t" }' in drafted.text
+    told = drafted.content(tmp_path)["runs"]
+    assert [run["name"] for run in told] == ["a", "b", "c"] and told[0]["columns"] == {}
+    assert told[1]["columns"]["angle"] == {"column": "log.angle", "file_unit": "rad"}
+    assert told[2]["columns"]["time"] == {"column": "t"}
     drafted.save()
     first, *others = gt.load_dataset(drafted.path).recordings
     for other in others:
