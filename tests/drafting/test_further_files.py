@@ -145,6 +145,25 @@ def test_units_of_further_files_that_are_not_those_of_the_first(tmp_path: Path) 
     np.testing.assert_allclose(others[1].signals["voltage"], first.signals["voltage"], atol=1e-12)
 
 
+class Room(Arm):
+    """A temperature in the place of the angle."""
+
+    outputs = (gt.Output("angle", "degC"),)
+
+
+@pytest.mark.parametrize(("added", "unit"), [(0.0, "degC"), (273.15, "K")])
+def test_a_unit_with_another_zero_is_told_by_its_size(tmp_path: Path, added: float, unit: str) -> None:
+    temperature = 15.0 + Q
+    for name, column, values in (("a", "angle [K]", temperature + 273.15), ("b", "angle", temperature + added)):
+        rows = zip(T, V, values, strict=True)
+        (tmp_path / f"{name}.csv").write_text(f"t,voltage,{column}\n" + "".join(f"{t},{v},{q}\n" for t, v, q in rows))
+    drafted = gt.card([tmp_path / "a.csv", tmp_path / "b.csv"], Room())
+    assert any(f"no unit is said: {unit} by its size" in line for line in drafted.open)
+    drafted.save()
+    first, second = gt.load_dataset(drafted.path).recordings
+    np.testing.assert_allclose(second.signals["angle"], first.signals["angle"], atol=1e-9)
+
+
 def test_a_column_of_the_same_name_inside_of_a_structure(tmp_path: Path) -> None:
     """Seen: "no column fits; left over: log.az, log.vbat" of the file behind one whose az was taken."""
     rows = zip(T, V, Q, strict=True)
