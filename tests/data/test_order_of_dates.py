@@ -11,7 +11,7 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.data import load_dataset
 from greybox_torch.data.readers import read_table
-from greybox_torch.data.readers.time_stamps import TimeStamps, is_time_stamp
+from greybox_torch.data.readers.time_stamps import TimeStamps, _days_in, is_time_stamp
 from greybox_torch.errors import UserError
 
 CARD = """time = "t"
@@ -107,6 +107,14 @@ def test_a_year_of_two_digits_that_comes_first(dates: tuple[str, ...]) -> None:
     stamps = TimeStamps(f"{date} 12:00" for date in dates)
     with pytest.raises(ValueError, match="where the year comes first; expected a date like 2026-03-30"):
         stamps.seconds(f"{dates[0]} 12:00")
+
+
+def test_of_very_many_samples_only_their_dates_are_kept() -> None:
+    days = _days_in(f"{day:02}/04/2026 12:00:{k % 60:02}" for day in (3, 4) for k in range(1000))
+    assert [(day.date, day.first[-2:], day.last[-2:]) for day in days] == [
+        ("03/04/2026", "00", "39"),
+        ("04/04/2026", "00", "39"),
+    ]
 
 
 def test_a_year_of_two_digits_that_comes_last() -> None:

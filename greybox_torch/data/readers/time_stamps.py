@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import pairwise
 
 from greybox_torch.data.checks import DAY
 from greybox_torch.data.readers.order_of_dates import (
@@ -44,6 +46,16 @@ _MONTHS = {
 } | {"mär": 3, "mrz": 3, "mai": 5, "okt": 10, "dez": 12}
 
 
+@dataclass
+class _Day:
+    """Samples of one ``date`` that follow each other, the first and the last; ``either``: the date may be one of two."""
+
+    date: str
+    either: bool
+    first: str
+    last: str
+
+
 class TimeStamps:
     """Turns the time stamps of one column into seconds: since 1970 where they have dates, else since midnight. A date
     alone is its midnight.
@@ -64,9 +76,9 @@ class TimeStamps:
         self.order: OrderOfDates | None = None
         self._year_first = ""
         if day_first is None:
-            dated = [(text, found) for text in texts if (found := _match(text)) and _dated(found)]
-            self._year_first = instead_of_year_first([found["date"] for _, found in dated])
-            self._look_for_the_order([(text, found["either"]) for text, found in dated if found["either"]])
+            days = _days_in(texts)
+            self._year_first = instead_of_year_first([day.date for day in days])
+            self._look_for_the_order([day for day in days if day.either])
 
     def seconds(self, text: str) -> float:
         """Raises ValueError for what is no time stamp, and for a date that may be one of two."""
@@ -122,18 +134,17 @@ class TimeStamps:
                 return 0
         return days_of(either, day_first=self.day_first is not False)
 
-    def _look_for_the_order(self, dated: list[tuple[str, str]]) -> None:
-        """From the texts that have a date of two readings, each with that date."""
-        if not dated:
+    def _look_for_the_order(self, days: list[_Day]) -> None:
+        """From the dates of two readings."""
+        if not days:
             return
-        changes = [k for k in range(1, len(dated)) if dated[k][1] != dated[k - 1][1]]
         possible: tuple[bool, ...] = (True, False)
-        for k in (0, *changes):
-            left = tuple(order for order in possible if is_date(dated[k][1], day_first=order))
+        for day in days:
+            left = tuple(order for order in possible if is_date(day.date, day_first=order))
             if not left:  # refused where it is read
                 break
             possible = left
-        at_changes = [(dated[k - 1][0], dated[k][0]) for k in changes]
+        at_changes = [(before.last, after.first) for before, after in pairwise(days)]
         steps = {order: _steps(at_changes, day_first=order) for order in possible}
         within = [order for order in steps if at_changes and all(0.0 < s <= DAY for s in steps[order])]
         if len(possible) == 1:
@@ -141,8 +152,8 @@ class TimeStamps:
         elif len(within) == 1:
             self.day_first = within[0]
             order = "day before month" if within[0] else "month before day"
-            self.note = f'dates such as "{dated[0][1]}" are read with the {order}, as they follow each other so'
-        self.order = OrderOfDates(dated[0][1], self.day_first, self.note)
+            self.note = f'dates such as "{days[0].date}" are read with the {order}, as they follow each other so'
+        self.order = OrderOfDates(days[0].date, self.day_first, self.note)
 
 
 def is_time_stamp(text: str) -> bool:
@@ -164,6 +175,20 @@ def _match(text: str) -> re.Match[str] | None:
         year, month, day, hour, minute, second, zone = plain.groups("")
         text = f"{year}-{month}-{day}T{hour}:{minute}:{second or '00'}{zone}"
     return _STAMP.fullmatch(text) if text else None
+
+
+def _days_in(texts: Iterable[str]) -> list[_Day]:
+    """Few, of however many samples: these may be millions."""
+    days: list[_Day] = []
+    for text in texts:
+        found = _match(text)
+        if found is None or not _dated(found):
+            continue
+        if days and days[-1].date == found["date"]:
+            days[-1].last = text
+        else:
+            days.append(_Day(found["date"], found["either"] is not None, text, text))
+    return days
 
 
 def _dated(found: re.Match[str]) -> bool:
