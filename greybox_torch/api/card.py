@@ -16,6 +16,8 @@ from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
+from greybox_torch.drafting.further_runs import own_columns
+from greybox_torch.drafting.runs import names_of
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
 from greybox_torch.keywords import names_checked
@@ -59,7 +61,7 @@ class CardResult(DraftedFile):
         return f"<data card for {', '.join(file.path.name for file in self.draft.files)}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
-        clock = self.draft.clock
+        clock, runs = self.draft.clock, self.draft.runs
         return {
             "schema": "greybox-card/1",
             "card": str(self.path),
@@ -71,6 +73,10 @@ class CardResult(DraftedFile):
             "files": [
                 {"file": str(file.path), "samples": file.samples, "columns": list(file.columns)}
                 for file in self.draft.files
+            ],
+            "runs": [
+                {"name": name, "files": [str(file.path) for file in run.files], "columns": own_columns(run, runs[0])}
+                for name, run in zip(names_of(runs), runs, strict=True)
             ],
             "open": list(self.open),
         }

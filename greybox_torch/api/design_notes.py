@@ -105,8 +105,8 @@ def _kept(found: DesignResult) -> Iterator[str]:
             "an input is designed."
         )
     length = min(len(trace) for trace in limits.kept.values())
-    again = " (beyond its end, backwards)" if length < len(found.time) else ""
-    yield f"That is what the prediction counts on{again}; where it comes otherwise, record what comes."
+    again = " (beyond the end of that recording, backwards)" if length < len(found.time) else ""
+    yield f"The predicted differences hold for these inputs{again}; record what really occurs."
 
 
 def _beginning(found: DesignResult) -> Iterator[str]:

@@ -9,6 +9,7 @@ import numpy as np
 
 from greybox_torch.api.short_refits import REFITTED, Change, asked_of, beginnings, far_better, fit_after
 from greybox_torch.data import DataSet
+from greybox_torch.data.card import read_card
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
@@ -60,6 +61,8 @@ def asked_of_best(
 
 
 def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
+    """Not of channels of which an experiment has a factor of its own: there is no one ratio then."""
+    own = _converted_by_experiments(data)
     for signals in (model.inputs, model.outputs):
         pairs = [
             pair for pair in combinations(signals, 2) if all(s.unit for s in pair) and pair[0].unit != pair[1].unit
@@ -67,9 +70,17 @@ def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
         for pair in pairs if len(pairs) <= MOST_ALIKE else ():
             one, other = (signal.name for signal in pair)
             ratio = data.channels[one].factor / data.channels[other].factor
-            if np.isfinite(ratio):
+            if np.isfinite(ratio) and not own & {one, other}:
                 question = f"are the columns of {listed([one, other])} exchanged"
                 yield Change({one: other, other: one}, question, factors={one: ratio, other: 1.0 / ratio})
+
+
+def _converted_by_experiments(data: DataSet) -> set[str]:
+    """The channels that an experiment on the card converts otherwise than [channels] does."""
+    if data.path is None or not data.path.is_file():
+        return set()
+    own = [item for experiment in read_card(data.path).experiment for item in experiment.columns.items()]
+    return {name for name, column in own if (column.expr, column.scale, column.file_unit) != (None, None, None)}
 
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:

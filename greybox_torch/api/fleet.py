@@ -110,10 +110,11 @@ def _run(
 
     try:
         # Workers take seconds to start, on this machine: for nothing, where nothing has changed.
-        at_once = {} if scheduler else dict(_settled(jobs, workers or allowed_cores()))
-        left = [job for job in jobs if job.name not in at_once]
-        for row, kept in at_once.values():
+        at_once: set[str] = set()
+        for name, (row, kept) in () if scheduler else _settled(jobs, workers or allowed_cores()):
+            at_once.add(name)
             state = come(row, kept, state)
+        left = [job for job in jobs if job.name not in at_once]
         if left:
             with cluster.connected(scheduler, min(workers or allowed_cores(), len(left)), folders) as there:
                 for job, done in share_out(there, left, diagnose_machine):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
+from sysconfig import get_path
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -94,5 +96,13 @@ def _taken(place: Path) -> str:
         found = find_spec(name) if name.isidentifier() else None
     except (ImportError, ValueError):
         return ""
-    own = found is not None and found.origin is not None and Path(found.origin).parent == place.absolute().parent
-    return f"is the name of an installed module, which {place.name} would hide" if found is not None and not own else ""
+    if found is None or (found.origin is None and not _installed(found.submodule_search_locations or ())):
+        return ""
+    own = found.origin is not None and Path(found.origin).parent == place.absolute().parent
+    return "" if own else f"is the name of an installed module, which {place.name} would hide"
+
+
+def _installed(folders: Iterable[str]) -> bool:
+    """Whether a package without a file of its own is; any folder beside the user's files is such a package as well."""
+    places = {Path(get_path(kind)) for kind in ("purelib", "platlib", "stdlib")}
+    return any(Path(folder).parent in places for folder in folders)

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.data.card import read_card
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.files import toml_key
 
 NEAR_ALL, ALL = 50.0, 100.5
 """Between which the largest value lies; beyond it is no percentage, and of a few a count or a ratio has as many."""
@@ -33,13 +35,24 @@ class Percentage(InASentence):
 
 
 def percentages(data: DataSet) -> Iterator[Percentage]:
-    """The channels of a data set that look so, over all of its experiments."""
+    """The channels of a data set that look so, over all of its experiments, but those of which the card gives the scale."""
+    scaled = _scaled(data)
     for name, channel in data.channels.items():
-        if channel.unit != "1":
+        if channel.unit != "1" or name in scaled:
             continue
         values = np.concatenate([r.signals[name] for r in data.recordings if name in r.signals] or [np.empty(0)])
         known = values[np.isfinite(values)]
         low, high = (float(end) for end in (known.min(initial=np.inf), known.max(initial=-np.inf)))
         if NEAR_ALL <= high <= ALL and low >= -ALL:
-            write = f'{name} = {{ …, file_unit = "%" }} if so' if data.path else "values divided by 100 if so"
+            line = f'{toml_key(name)} = {{ …, file_unit = "%" }} if so, or scale = 1.0 in its line if it is none'
+            write = line if data.path else "values divided by 100 if so"
             yield Percentage(name, low, high, write)
+
+
+def _scaled(data: DataSet) -> set[str]:
+    """The channels of which somebody gave the factor, in [channels] or for an experiment, and so has thought of the unit."""
+    if data.path is None or not data.path.is_file():
+        return set()
+    card = read_card(data.path)
+    cards = [card, *(card.of(experiment) for experiment in card.experiment)]
+    return {name for one in cards for name, entry in one.channels.items() if "scale" in entry.model_fields_set}

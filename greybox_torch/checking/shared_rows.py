@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import Card, read_card
 from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.data_warning import InASentence
 
@@ -46,14 +46,21 @@ def shared_rows(data: DataSet) -> Iterator[SharedRows]:
     if data.path is None or not data.path.is_file():
         return
     held_out = data.held_out_by_default
-    for one, other in combinations(read_card(data.path).experiment, 2):
+    card = read_card(data.path)
+    for one, other in combinations(card.experiment, 2):
         alike = one.rows == other.rows if held_out else one.role == other.role  # nothing of one is judged on the other
-        if alike or one.columns != other.columns:  # other columns: runs that stand side by side in one file
+        if alike or _of_other_columns(card, one, other):  # runs that stand side by side in one file
             continue
         first, second = (one, other) if one.role == "estimation" else (other, one)
         shared = _shared(one, other, data.path.parent)
         if shared:
             yield SharedRows(first.name, second.name, shared, held_out)
+
+
+def _of_other_columns(card: Card, one: ExperimentEntry, other: ExperimentEntry) -> bool:
+    """Whether a channel is made of other columns in one of them, whatever these are multiplied by."""
+    first, second = card.formulas(one), card.formulas(other)
+    return any(first[name].text != second[name].text for name in first.keys() & second.keys())
 
 
 def _shared(one: ExperimentEntry, other: ExperimentEntry, folder: Path) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from greybox_torch.checking.finding import Finding, Level
 from greybox_torch.checking.source import Source
 from greybox_torch.estimate.measured_states import measuring_signal, not_measured
+from greybox_torch.files import toml_key
 from greybox_torch.model import Body, GreyBoxModel
 from greybox_torch.model.sensed_states import sensed_states
 
@@ -38,5 +39,8 @@ def borrowed_starts(model: GreyBoxModel, source: Source, given: Collection[str] 
             line = source.line_of(f'State("{state.name}"')
             other = f"the only output in its unit, which shows '{of_signal[signal]}'"
             found = f"state '{state.name}' begins with the first sample of {signal}, {other}"
-            write = f'a number to begin with, if it may begin elsewhere: State("{state.name}", …, initial=0.0)'
+            on_card = f"{toml_key(state.name)} = {{ value = … }} under [model.initial] on the card"
+            write = (
+                f'a number to begin with, if it may begin elsewhere: State("{state.name}", …, initial=…), or {on_card}'
+            )
             yield Finding("note", "declaration", found, write, source.file, line)

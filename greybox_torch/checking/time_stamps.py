@@ -10,15 +10,19 @@ import numpy as np
 from greybox_torch.checking.as_in_the_file import rows_on_the_card
 from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
+from greybox_torch.data.card import read_card
+from greybox_torch.data.card_channels import TimeEntry
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces_around
 from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.steps import even_step
 from greybox_torch.data.summer_time import instead_of_summer_time
+from greybox_torch.files import toml_text
 from greybox_torch.name_lists import listed
 
 _SHOWN = 3  # places at which samples were lost
+_PREFIXED = ("s", "ms", "us", "ns")  # a thousand of each are one before
 _SAME = 0.01  # of a sample time: how far a ratio may lie from a power of 1000
 
 
@@ -53,9 +57,10 @@ def odd_time_stamps(data: DataSet, joined: Mapping[str, JoinedFiles]) -> Iterato
         recording for recording in data.recordings if not (data.held_out_by_default and recording.role == "validation")
     ]
     first = min(whole, key=lambda recording: recording.sample_time, default=None)
-    for recording in whole:
-        if first is not None and _thousands(recording.sample_time / first.sample_time):
-            yield _unit(recording, first)
+    slower = [r for r in whole if first is not None and _thousands(r.sample_time / first.sample_time)]
+    clocks = _clocks(data) if slower else {}
+    of_write = {(odd := _unit(r, first, clocks)).write: odd for r in reversed(slower) if first is not None}
+    yield from reversed(of_write.values())
 
 
 def _gap(recording: Recording, gap: Gap, rows: tuple[int, int]) -> OddTime:
@@ -118,12 +123,24 @@ def _gap_of_joined(files: JoinedFiles, table: Table, gap: Gap) -> OddTime:
     )
 
 
-def _unit(recording: Recording, first: Recording) -> OddTime:
+def _clocks(data: DataSet) -> dict[str, TimeEntry]:
+    """The time stamps of every experiment, as the card says; none where data are from memory."""
+    card = None if data.path is None or not data.path.is_file() else read_card(data.path)
+    return {e.name: time for e in card.experiment if (time := card.of(e).time)} if card else {}
+
+
+def _unit(recording: Recording, first: Recording, clocks: Mapping[str, TimeEntry]) -> OddTime:
+    """The faster one is likely read in too small a unit where the card says one below seconds, else the slower one in too large a one."""
     ratio = recording.sample_time / first.sample_time
+    power = round(float(np.log10(ratio)) / 3.0)
+    fast, slow = (_PREFIXED.index(clocks[r.name].unit) if r.name in clocks else 0 for r in (first, recording))
+    wrong, unit = (first, fast - power) if fast >= power else (recording, min(slow + power, len(_PREFIXED) - 1))
+    column = clocks[wrong.name].column if wrong.name in clocks else "…"
+    entry = f'column = {toml_text(column)}, unit = "{_PREFIXED[unit]}"'
     return OddTime(
         f'[[experiment]] "{recording.name}": its sample time is {recording.sample_time:.4g} s, {ratio:.0f} times that of '
         f'"{first.name}" ({first.sample_time:.4g} s), as if one file counted in seconds and the other in milliseconds',
-        'columns = { time = { column = "…", unit = "ms" } } in that experiment',
+        f'columns = {{ time = {{ {entry} }} }} in [[experiment]] "{wrong.name}"',
     )
 
 

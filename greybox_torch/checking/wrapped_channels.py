@@ -11,9 +11,11 @@ import numpy as np
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.units import conversion
 from greybox_torch.data.unwrapping import TURNS, turn_within
 from greybox_torch.errors import UserError
+from greybox_torch.files import toml_key
 from greybox_torch.in_unit import in_unit
 
 
@@ -50,14 +52,17 @@ def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
             period, jumps = turn_within(values[known], unit)
             if len(jumps):
                 seconds = float(recording.time[known[jumps[0] + 1]] - recording.time[0])
-                write = _write(data, name, period)
+                write = _write(data, recording.name, name, period)
                 yield WrappedChannel(recording.name, name, period, unit, len(jumps), seconds, write)
 
 
-def _write(data: DataSet, name: str, period: float) -> str:
+def _write(data: DataSet, experiment: str, name: str, period: float) -> str:
     """What to write on the card, as far as there is one; else what to do with the array."""
     try:
-        entry = None if data.path is None else read_card(data.path).channels.get(name)
+        card = None if data.path is None else read_card(data.path)
+        here = [e for e in card.experiment if e.name == experiment.removesuffix(HELD_OUT)] if card else []
+        own = any(name in e.columns for e in here)
+        entry = card.of(here[0]).channels.get(name) if card and here else None
         if entry is None or entry.derivative is not None:
             return f"the turns added up: numpy.unwrap(values, period={_number(period)})"
         factor = entry.scale if entry.file_unit is None else conversion(entry.file_unit, entry.unit, "")[0]
@@ -69,7 +74,12 @@ def _write(data: DataSet, name: str, period: float) -> str:
     # Counts, or another unit, were taken for angles.
     if turn and factor == 1.0 and not math.isclose(turn, period, rel_tol=1e-6):
         call += f" * {_number(turn)} / {_number(period)}"
-    return f"{name} = {{ expr = '{call}', … }}, which adds up the turns, with the rest of the line as it is"
+    line = f"{toml_key(name)} = {{ expr = '{call}', … }}"
+    if own:
+        return (
+            f"columns = {{ {line} }} in that experiment, which adds up the turns, with the rest of that entry as it is"
+        )
+    return f"{line}, which adds up the turns, with the rest of the line as it is"
 
 
 def _number(period: float) -> str:

@@ -54,6 +54,12 @@ def _column(value: Any) -> Any:
     return value
 
 
+def _an_expression(text: str | None) -> str | None:
+    if text is not None:
+        parse_expression(text)
+    return text
+
+
 class ChannelEntry(Entry):
     """Where a channel stands in the files: file value × scale = value in `unit`, or converted from `file_unit`.
 
@@ -71,6 +77,7 @@ class ChannelEntry(Entry):
     missing: Finite | Text | list[Finite | Text] | None = None
 
     _position = field_validator("column", mode="before")(_column)
+    _parsed = field_validator("expr")(_an_expression)
 
     @field_validator("scale")
     @classmethod
@@ -78,13 +85,6 @@ class ChannelEntry(Entry):
         if scale == 0.0:
             raise ValueError("a scale of zero would erase the channel; expected a number other than zero")
         return scale
-
-    @field_validator("expr")
-    @classmethod
-    def _an_expression(cls, text: str | None) -> str | None:
-        if text is not None:
-            parse_expression(text)
-        return text
 
     @field_validator("missing")
     @classmethod
@@ -149,20 +149,26 @@ class TimeEntry(Entry):
 
 
 class OwnColumn(Entry):
-    """A column of one experiment alone. Where its file is in other units than those of the card's other files, `unit` is that of time
-    stamps, `file_unit` or `scale` how a channel is converted; without them it is as the card says.
+    """A column of one experiment alone, or `expr`, from which a channel is computed there. Where its file is in other units than those
+    of the card's other files, `unit` is that of time stamps, `file_unit` or `scale` how a channel is converted; without them it is as the
+    card says.
     """
 
-    column: Text
+    column: Text | None = None
+    expr: Text | None = None
     unit: Text | None = None
     date: Text | None = None
     file_unit: Text | None = None
     scale: Finite | None = None
 
     _position = field_validator("column", "date", mode="before")(_column)
+    _parsed = field_validator("expr")(_an_expression)
 
     @model_validator(mode="after")
     def _one_conversion(self) -> Self:
+        if (self.column is None) == (self.expr is None):
+            found = 'neither "column" nor "expr" is' if self.column is None else 'both "column" and "expr" are'
+            raise ValueError(f"{found} given; expected one of them")
         if self.file_unit is not None and self.scale is not None:
             raise ValueError('both "scale" and "file_unit" are given; expected one of them')
         if self.scale == 0.0:

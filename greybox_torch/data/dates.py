@@ -51,6 +51,7 @@ def with_dates(read: Read, time: TimeEntry | None, clock: str | None) -> Read:
         if not are_times_of_day(times * time.seconds):
             raise UserError(f'{path}, column "{clock}": is no column of times of day; expected time without date = "…"')
         kept = {name: values for name, values in table.columns.items() if name in columns}
-        return replace(table, columns=kept | {clock: times + days / time.seconds})
+        order = {clock: replace(table.dates[date], day=DAY / time.seconds)} if date in table.dates else {}
+        return replace(table, columns=kept | {clock: times + days / time.seconds}, dates=order)
 
     return reading

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from greybox_torch.data.card_channels import ChannelEntry, TimeEntry
 from greybox_torch.data.counts import check_counts, is_count
 from greybox_torch.data.expression import Expression
+from greybox_torch.data.own_columns import conversion_written, in_that_experiment
 from greybox_torch.data.source import Source
 from greybox_torch.data.time_units import unit_of_time
 from greybox_torch.data.understood_units import capitals_alone, other_quantity, understood
@@ -37,15 +39,22 @@ def factor_of(entry: ChannelEntry) -> float:
 
 
 def check_units(
-    place: str, channels: Mapping[str, ChannelEntry], formulas: Mapping[str, Expression], source: Source
+    place: str,
+    channels: Mapping[str, ChannelEntry],
+    formulas: Mapping[str, Expression],
+    source: Source,
+    own: Collection[str] = (),
 ) -> None:
-    """Raises UserError, beginning with `place`, for all channels whose units on the card are not those that their files say."""
+    """Raises UserError, beginning with `place`, for all channels whose units on the card are not those that their files say; ``own`` are
+    those of which the experiment has a column of its own.
+    """
     problems: list[str] = []
     for name, formula in formulas.items():
         where = f'channel "{name}"'
+        write = partial(conversion_written, name, formula.text, own=name in own)
         try:
             for path, found in _said(source, formula.text).items():
-                _check_unit(where, channels[name], formula, path, found)
+                _check_unit(where, channels[name], formula, path, found, write)
         except UserError as error:
             problems.append(str(error))
     check_none(problems, place, before_one=", ")
@@ -58,14 +67,16 @@ def _said(source: Source, column: str) -> dict[Path, str]:
     return {table.path: table.units.get(column, "") for table in tables}
 
 
-def _check_unit(place: str, entry: ChannelEntry, formula: Expression, path: Path, found: str) -> None:
+def _check_unit(
+    place: str, entry: ChannelEntry, formula: Expression, path: Path, found: str, write: Callable[[str], str]
+) -> None:
     if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
         return
     column = formula.text
     check_counts(place, formula, path, found if is_count(found) else entry.file_unit or found, entry.unit)
     if entry.file_unit is not None:
         conversion(_of_rate(entry.file_unit, entry), entry.unit, f"{place}, file_unit")
-        _check_file_unit(place, entry, column, path, found)
+        _check_file_unit(place, entry, column, path, found, write)
         return
     known = understood(found) if found and entry.unit else ""
     rate = _of_rate(known, entry)
@@ -75,19 +86,23 @@ def _check_unit(place: str, entry: ChannelEntry, formula: Expression, path: Path
     factor = slip(rate, entry.unit)
     if factor is not None:
         conversion(rate, entry.unit, place)  # says so where nobody can tell the factor
-        raise UserError(f'{said}; expected file_unit = "{known}" to convert it ({factor:.6g}), or the scale')
+        unit = write(f'file_unit = "{known}"')
+        raise UserError(f"{said}; expected {unit} to convert it ({factor:.6g}), or the scale")
     if entry.unit != "1" and other_quantity(rate, entry.unit):
-        raise UserError(f"{said}; expected another column; or, if the file's unit is wrong, scale = 1.0")
+        raise UserError(f"{said}; expected another column; or, if the file's unit is wrong, {write('scale = 1.0')}")
 
 
-def _check_file_unit(place: str, entry: ChannelEntry, column: str, path: Path, found: str) -> None:
+def _check_file_unit(
+    place: str, entry: ChannelEntry, column: str, path: Path, found: str, write: Callable[[str], str]
+) -> None:
     """Raises UserError where the file says that a column is in another unit than `file_unit`."""
     known, given = understood(found) if found else "", entry.file_unit or ""
     if not known or known == "1" or capitals_alone(found, given) or not _differ(known, given):
         return
     raise UserError(
         f'{place}: {path} has column "{column}" in "{found}", the card says file_unit = "{given}"; '
-        f"expected {_instead(known, entry)}; or, if the file's unit is wrong, {_all_the_same(entry, column)} in the place of file_unit"
+        f"expected {_instead(known, entry, write)}; or, if the file's unit is wrong, {write(_all_the_same(entry, column))} in the place of "
+        "file_unit"
     )
 
 
@@ -97,12 +112,13 @@ def _differ(found: str, given: str) -> bool:
     return factor == factor if factor is not None else other_quantity(found, given)
 
 
-def _instead(known: str, entry: ChannelEntry) -> str:
+def _instead(known: str, entry: ChannelEntry, write: Callable[[str], str]) -> str:
     """What to write if the file is right."""
     with suppress(UserError):
         factor, offset = conversion(_of_rate(known, entry), entry.unit, "")
         same = abs(factor - 1.0) < 1e-9 and offset == 0.0
-        return "no file_unit" if same else f'file_unit = "{known}"'
+        unit = write(f'file_unit = "{known}"')
+        return "no file_unit" if same and unit.startswith("file_unit") else unit
     return "another column"
 
 
@@ -130,5 +146,5 @@ def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) 
         raise UserError(
             f'{path}, time: {table.path} has column "{clock}" in "{said}", the card says "{time.unit}"; '
             f'expected time = {{ column = "{clock}", unit = "{found}" }}, or, where other files of the card are in "{time.unit}", '
-            f'columns = {{ time = {{ column = "{clock}", unit = "{found}" }} }} in that [[experiment]]'
+            + in_that_experiment("time", f'column = "{clock}", unit = "{found}"')
         )

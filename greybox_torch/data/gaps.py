@@ -92,7 +92,7 @@ def lost_samples(time: NDArray[np.float64]) -> tuple[Lost, ...]:
         return ()
     usual = np.abs(ratio - 1.0) < _BESIDE
     count = np.rint(ratio).astype(np.int64) - 1
-    lost = long & (count <= SAMPLES_LOST) & (np.abs(ratio - 1.0 - count) <= _WHOLE)
+    lost = long & ~gap_steps(time) & (count <= SAMPLES_LOST) & (np.abs(ratio - 1.0 - count) <= _WHOLE)
     lost[1:-1] &= usual[:-2] & usual[2:]
     lost[[0, -1]] = False
     return tuple(Lost(int(k), float(time[k] - time[0]), int(count[k])) for k in np.flatnonzero(lost))
@@ -134,7 +134,14 @@ def pieces_around(lost: tuple[int, int], rows: tuple[int, int]) -> str:
 
 
 def gap_steps(time: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Which steps (N - 1,) of increasing time stamps are gaps: none where long steps are the rule."""
+    """Which steps (N - 1,) of increasing time stamps are gaps: none where long steps are the rule. The hour that local time leaves out is
+    one, of however few samples.
+    """
     steps = np.diff(time)
-    long = steps > (SAMPLES_LOST + 1.5) * np.median(steps) if len(steps) else np.zeros(0, dtype=bool)
+    if not len(steps):
+        return np.zeros(0, dtype=bool)
+    step = float(np.median(steps))
+    long = steps > (SAMPLES_LOST + 1.5) * step
+    longest = int(np.argmax(steps))
+    long[longest] |= not long.any() and clock_set_forward(float(time[longest]), float(time[longest + 1]), step)
     return long & (long.sum() <= max(1.0, _FEW * len(steps)))

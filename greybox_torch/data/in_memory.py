@@ -21,13 +21,16 @@ from greybox_torch.errors import UserError, did_you_mean
 
 @dataclass(frozen=True)
 class Samples:
-    """Checked samples of one experiment: time (N,) in s, the step in s, arrays (N,) by channel, units by channel."""
+    """Checked samples of one experiment: time (N,) in s, the step in s, arrays (N,) by channel, units by channel. ``notes`` say how
+    dates were read.
+    """
 
     time: NDArray[np.float64]
     sample_time: float
     signals: dict[str, NDArray[np.float64]]
     units: dict[str, str]
     constants: frozenset[str]
+    notes: tuple[str, ...] = ()
 
 
 def samples_of_arrays(
@@ -53,7 +56,7 @@ def samples_of_arrays(
     }
     if not held:
         raise UserError(f"{place}, signals: found one number for every channel, expected an array of one at least")
-    stamps = None if time is None else _seconds(time, f"{place}, time")
+    stamps, notes = (None, ()) if time is None else _seconds(time, f"{place}, time")
     length = _common_length(place, held | ({} if stamps is None else {TIME: stamps}))
     check_length(length, place)
     if stamps is None:
@@ -63,7 +66,7 @@ def samples_of_arrays(
         check_time(stamps, lambda k: f"{place}, time, sample {k} (the first is 0)")
         step = usual_step(stamps)
     held = {name: np.full(length, constants[name]) if name in constants else held[name] for name in signals}
-    return Samples(stamps, step, held, _units(place, units, held), frozenset(constants))
+    return Samples(stamps, step, held, _units(place, units, held), frozenset(constants), notes)
 
 
 def samples_of_frame(
@@ -149,25 +152,25 @@ def _signal(place: str, channel: str, values: Any) -> NDArray[np.float64]:
     return found
 
 
-def _seconds(time: Any, where: str) -> NDArray[np.float64]:
-    """Time stamps in seconds; dates and times count from the first of them."""
+def _seconds(time: Any, where: str) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Time stamps in seconds, and notes; dates and times count from the first of them."""
     stamps = time if np.ma.isMaskedArray(time) or hasattr(time, "detach") else np.asarray(time)
     if isinstance(stamps, np.ma.MaskedArray) and stamps.dtype.kind in "mM":
         stamps = np.where(np.ma.getmaskarray(stamps), np.array("NaT", dtype=stamps.dtype), stamps.data)
     if isinstance(stamps, np.ndarray) and stamps.dtype.kind in "mM" and stamps.ndim == 1 and stamps.size:
         since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
         seconds = since / np.timedelta64(1, "s")
-        return np.where(np.isnat(stamps), np.nan, seconds)
+        return np.where(np.isnat(stamps), np.nan, seconds), ()
     dated = isinstance(stamps, np.ndarray) and stamps.dtype.kind == "O" and stamps.ndim == 1 and stamps.size
     if dated and all(isinstance(at, datetime) for at in stamps):
-        return _since_the_first(list(stamps), where)
+        return _since_the_first(list(stamps), where), ()
     written = isinstance(stamps, np.ndarray) and stamps.dtype.kind in "OU" and stamps.ndim == 1 and stamps.size
     if written and all(isinstance(at, str) for at in stamps):
         return _of_text(stamps, where)
-    return numbers(stamps, where)
+    return numbers(stamps, where), ()
 
 
-def _of_text(stamps: NDArray, where: str) -> NDArray[np.float64]:
+def _of_text(stamps: NDArray, where: str) -> tuple[NDArray[np.float64], tuple[str, ...]]:
     """Seconds of dates and times as text, read like those of a file: pandas.read_csv leaves them as they are."""
     reads, found = TimeStamps(text.strip() for text in stamps), np.empty((2, len(stamps)))
     for k, text in enumerate(stamps):
@@ -175,7 +178,7 @@ def _of_text(stamps: NDArray, where: str) -> NDArray[np.float64]:
             found[:, k] = reads.minute_and_seconds(text.strip())
         except ValueError as error:
             raise UserError(f"{where}, sample {k} (the first is 0): found {str(text)!r:.40}: {error}") from None
-    return (found - found[:, :1]).sum(axis=0)
+    return (found - found[:, :1]).sum(axis=0), (f"time: {reads.note}",) if reads.note else ()
 
 
 def _since_the_first(stamps: Sequence[datetime], where: str) -> NDArray[np.float64]:

@@ -84,7 +84,7 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(place, path, card, source, clock, start, stop)
-    check_units(place, card.channels, formulas, source)
+    check_units(place, card.channels, formulas, source, experiment.columns)
     signals = {
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
         for name, formula in formulas.items()

@@ -6,8 +6,21 @@ from collections.abc import Mapping
 from typing import get_args
 
 from greybox_torch.data.card_channels import ChannelEntry, OwnColumn, TimeEntry
+from greybox_torch.files import toml_key, toml_text
 
 _UNITS: tuple[str, ...] = get_args(TimeEntry.model_fields["unit"].annotation)
+
+
+def in_that_experiment(name: str, entry: str) -> str:
+    """What to write for a channel, or the time stamps, of one experiment alone; ``entry`` are keys with their values."""
+    return f"columns = {{ {toml_key(name)} = {{ {entry} }} }} in that [[experiment]]"
+
+
+def conversion_written(name: str, column: str, keys: str, *, own: bool) -> str:
+    """How to write ``keys`` that convert a channel: in its line as they are, or where the column is one experiment's ``own``, there."""
+    if not own:
+        return keys
+    return in_that_experiment(name, keys if keys.startswith("expr") else f"column = {toml_text(column)}, {keys}")
 
 
 def own_time(time: TimeEntry, own: OwnColumn | None) -> TimeEntry:
@@ -28,13 +41,14 @@ def _with(entry: ChannelEntry, own: OwnColumn) -> ChannelEntry:
     converted = {name: value for name in ("scale", "file_unit") if (value := getattr(own, name)) is not None}
     if converted:
         kept = {name: value for name, value in kept.items() if name not in ("scale", "file_unit")}
-    return ChannelEntry.model_validate(kept | converted | {"column": own.column})
+    source = {"column": own.column} if own.expr is None else {"expr": own.expr}
+    return ChannelEntry.model_validate(kept | converted | source)
 
 
 def wrong_in(name: str, own: OwnColumn, entry: ChannelEntry | None) -> str:
     """What is wrong with an experiment's own column of a channel, or of the time stamps (without an ``entry``); "" where nothing is."""
     if entry is None:
-        given = [key for key in ("file_unit", "scale") if getattr(own, key) is not None]
+        given = [key for key in ("expr", "file_unit", "scale") if getattr(own, key) is not None]
         expected = '{ column = "t", unit = "ms" } of time stamps'
         if own.unit is not None and own.unit not in _UNITS:
             return f'found unit = "{own.unit}", expected {" ".join(_UNITS)}'

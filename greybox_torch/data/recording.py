@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from greybox_torch.data.in_memory import samples_of_arrays, samples_of_frame
+from greybox_torch.data.in_memory import Samples, samples_of_arrays, samples_of_frame
 from greybox_torch.data.role import Role, check_role
 from greybox_torch.errors import UserError
 
@@ -104,7 +104,12 @@ class Recording:
         """
         made = samples_of_arrays(name, signals, sample_time=sample_time, time=time, units=units)
         check_role(role, f'recording "{name}", role')
-        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units, constants=made.constants)
+        return cls._of(name, role, made)
+
+    @classmethod
+    def _of(cls, name: str, role: Role, made: Samples) -> Recording:
+        held = made.time, made.sample_time, made.signals
+        return cls(name, role, *held, units=made.units, notes=made.notes, constants=made.constants)
 
     @classmethod
     def from_dataframe(
@@ -144,7 +149,7 @@ class Recording:
             name, frame, time=time, sample_time=sample_time, units=units, columns=columns, constants=constants
         )
         check_role(role, f'recording "{name}", role')
-        return cls(name, role, made.time, made.sample_time, made.signals, units=made.units, constants=made.constants)
+        return cls._of(name, role, made)
 
     def __len__(self) -> int:
         return len(self.time)

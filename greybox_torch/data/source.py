@@ -13,6 +13,7 @@ from greybox_torch.data.checks import check_finite, check_same_length, check_tim
 from greybox_torch.data.gaps import in_gaps, lost_samples
 from greybox_torch.data.in_no_file import in_nested_file, in_no_file
 from greybox_torch.data.joined_rows import joined_rows
+from greybox_torch.data.one_order import of_one_order
 from greybox_torch.data.processing import at_times, between_samples
 from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
@@ -77,10 +78,12 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
             raise in_nested_file(files[0], error) from None
         return Source((table,), check_same_length(table.columns, table.path), table.notes)
     if join == "concatenate":
-        tables = tuple(read(file, tuple(columns)) for file in files)
+        tables, note = of_one_order([read(file, tuple(columns)) for file in files], time)
         held = [check_same_length(table.columns, table.path) for table in tables]
         joined = {column: np.concatenate([one[column] for one in held]) for column in columns}
-        return Source(tables, joined, tuple(dict.fromkeys(note for table in tables for note in table.notes)))
+        return Source(
+            tables, joined, tuple(dict.fromkeys([*(note for table in tables for note in table.notes), *note]))
+        )
     if join == "rows":
         tables, held = joined_rows(files, columns, time, read)
         notes = tuple(dict.fromkeys(note for table in tables for note in table.notes))
@@ -95,13 +98,17 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
 
 def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, read: Read) -> Source:
     """Every column from the first file that has it, at the time stamps of the first file; missing where its own file has a gap."""
-    lacking, tables, held, notes, between = [c for c in columns if c != time], [], {}, [], {}
+    lacking, read_one, held, between = [c for c in columns if c != time], [], {}, {}
     for file in files:
-        table = _what_there_is(file, lacking, time, read)
+        read_one.append(_what_there_is(file, lacking, time, read))
+        lacking = [column for column in lacking if column not in read_one[-1].columns]
+    tables, told = of_one_order(read_one, time)
+    notes = list(told)
+    for file, table in zip(files, tables, strict=True):
         own = check_same_length(table.columns, table.path)
         notes += table.notes
         check_time(own[time], lambda sample, table=table: table.place(time, sample))
-        if not tables:
+        if table is tables[0]:
             held = own
         else:
             unknown = in_gaps(held[time], own[time])
@@ -116,11 +123,9 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
                         f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}'
                     )
                     between |= {} if of_none is None else {column: of_none}
-        tables.append(table)
-        lacking = [column for column in lacking if column not in own]
     if lacking:
         raise in_no_file(files, lacking[0])
-    return Source((tables[0],), held, tuple(notes), tuple(tables[1:]), between=between)
+    return Source(tables[:1], held, tuple(notes), tables[1:], between=between)
 
 
 def _also_across_lost(table: Table, stamps: NDArray[np.float64]) -> str:

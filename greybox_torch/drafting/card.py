@@ -11,7 +11,7 @@ from greybox_torch.data.gaps import Gap, pieces_around
 from greybox_torch.data.summer_time import instead_of_summer_time
 from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
-from greybox_torch.drafting.further_runs import guessed_units, of_further_runs, own_columns
+from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_further_runs, own_columns
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
@@ -161,12 +161,11 @@ def _experiment(
     run: Run,
     role: str,
     folder: Path,
-    columns: dict[str, str],
+    columns: dict[str, dict[str, str]],
     guessed: str,
     rows: tuple[int, int] | None,
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
-    own = ", ".join(f"{toml_key(channel)} = {column}" for channel, column in columns.items())
     files = [toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix()) for file in run.files]
     return [
         *_gap(run.clock.gap, rows or (0, run.whole.samples)),
@@ -177,7 +176,7 @@ def _experiment(
         f"role = {toml_text(role)}              # {seen}",
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"# {guessed}; please check"] if guessed else []),
-        *([f"columns = {{ {own} }}"] if own else []),
+        *([f"columns = {{ {in_toml(columns)} }}"] if columns else []),
         "",
     ]
 
@@ -189,7 +188,7 @@ def _gap(gap: Gap | None, rows: tuple[int, int]) -> list[str]:
     if gap.of_summer_time:
         return [
             f"# {gap.in_brief}: as where local time is set to summer time.",
-            f"# Then nothing is missing: {instead_of_summer_time(gap.step)}.",
+            f"# Then nothing is missing: give {instead_of_summer_time(gap.step)}.",
         ]
     return [
         f"# {gap.in_brief}: a simulation across it would hold the last input.",

@@ -64,7 +64,10 @@ class Clock:
 def clock_of(file: Recorded) -> Clock:
     """The clock of a file, as far as names and numbers tell."""
     clock = _without_date(file)
-    return replace(clock, date=file.dates.get(clock.column or "", ""))
+    date = file.dates.get(clock.column or "", "")
+    order = file.orders.get(date or clock.column or "")
+    told = f"; {order.note}" if order and order.note and not clock.broken else ""
+    return replace(clock, date=date, remark=f"{clock.remark}{told}")
 
 
 def _without_date(file: Recorded) -> Clock:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import permutations
 from pathlib import Path
 
@@ -13,6 +14,7 @@ from greybox_torch.data.card_channels import ChannelEntry
 from greybox_torch.data.column_units import OF_QUANTITY, is_set_apart, parts_of, unit_in
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
+from greybox_torch.data.own_columns import conversion_written, in_that_experiment
 from greybox_torch.data.time_units import SPELLINGS
 from greybox_torch.data.units import conversion, dimensionality, per_minute, turns_per_time
 from greybox_torch.errors import UserError
@@ -70,10 +72,13 @@ def _found(card: Card) -> Iterator[Contradiction]:
             if name == TIME and card.time is not None:
                 told = time_in(column)
                 if told and _differ(told, card.time.unit):
-                    write = f'time = {{ column = "{column}", unit = "{told}" }}, which converts the stamps to s, if the equations are in s'
+                    entry = f'column = {toml_text(column)}, unit = "{told}"'
+                    time = in_that_experiment(TIME, entry) if where else f"time = {{ {entry} }}"
+                    write = f"{time}, which converts the stamps to s, if the equations are in s"
                     yield Contradiction(f"{where}{TIME}", column, told, card.time.unit, write)
             elif name in card.channels:
-                yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns)
+                to_write = partial(conversion_written, name, column, own=bool(where))
+                yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns, to_write)
         yield from _exchanged(where, {n: c for n, c in of.items() if c and n in card.channels}, card.channels, columns)
 
 
@@ -94,24 +99,24 @@ def _exchanged(
             yield Contradiction(f'{where}channel "{one}"', named[one], told[one], entries[one].unit, write)
 
 
-def _of_channel(place: str, column: str, entry: ChannelEntry, columns: set[str]) -> Iterator[Contradiction]:
+def _of_channel(
+    place: str, column: str, entry: ChannelEntry, columns: set[str], to_write: Callable[[str], str]
+) -> Iterator[Contradiction]:
     if "scale" in entry.model_fields_set:  # whoever gives a factor has thought of the unit
         return
     said = entry.file_unit or entry.unit
     if ends_in_counts(column) and is_angle(said):
-        write = (
-            f"expr = {toml_text(in_turns(column, said))} for 65536 counts a turn; or, if the name is wrong, scale = 1.0"
-        )
+        turns = to_write(f"expr = {toml_text(in_turns(column, said))}")
+        write = f"{turns} for 65536 counts a turn; or, if the name is wrong, {to_write('scale = 1.0')}"
         yield Contradiction(place, column, "counts", said, write)
     rate = "" if entry.derivative is None or entry.file_unit else "/s"
     told, sure = _unit_of(column, columns, said)
     if not (told and said and _differ(told + rate, said)):
         return
     if sure or _dimension(told + rate) == _dimension(said):
-        write = (
-            f'file_unit = "{told}"' if _converts(told + rate, entry.unit) else f"another column, or a unit like {told}"
-        )
-        yield Contradiction(place, column, told, said, f"{write}; or, if the name is wrong, scale = 1.0")
+        converted = to_write(f'file_unit = "{told}"')
+        write = converted if _converts(told + rate, entry.unit) else f"another column, or a unit like {told}"
+        yield Contradiction(place, column, told, said, f"{write}; or, if the name is wrong, {to_write('scale = 1.0')}")
 
 
 def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:

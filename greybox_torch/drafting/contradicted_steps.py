@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
+from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.data_warning import InASentence
-from greybox_torch.data.gaps import Gap, longest_gap
+from greybox_torch.data.gaps import Gap, longest_gap, pieces_around
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.readers.table import Table
 from greybox_torch.data.units import conversion
@@ -60,6 +62,8 @@ class ClosedGap(InASentence):
     column: str
     unit: str
     gap: Gap
+    rows: tuple[int, int] | None
+    """Those of the experiment; None where several files follow each other in it."""
 
     @property
     def found(self) -> str:
@@ -70,24 +74,32 @@ class ClosedGap(InASentence):
     @property
     def write(self) -> str:
         """What to write instead."""
-        return f"time = {_time_entry(self.column, self.unit)} in its place"
+        split = self.gap.after + 1
+        pieces = "" if self.rows is None else f"; or {pieces_around((split, split), self.rows)}"
+        return f"time = {_time_entry(self.column, self.unit)} in its place{pieces}"
 
 
 def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps | ClosedGap]:
-    """The first file whose stamps say another sample time than the card, or have a gap; none where the card names its time stamps."""
+    """The first file whose stamps say another sample time than the card, or have a gap within an experiment; none where the card names its
+    time stamps.
+    """
     if data.path is None or not data.path.is_file():
         return
     card = read_card(data.path)
     if card.time is not None or card.sample_time is None:
         return
-    for file in dict.fromkeys(data.path.parent / name for entry in card.experiment for name in entry.file):
-        told = _told(file, card.sample_time)
+    experiments: dict[Path, list[ExperimentEntry]] = {}
+    for entry in card.experiment:
+        for name in entry.file:
+            experiments.setdefault(data.path.parent / name, []).append(entry)
+    for file, entries in experiments.items():
+        told = _told(file, card.sample_time, entries)
         if told is not None:
             yield told
             return
 
 
-def _told(file: Path, sample_time: float) -> ContradictedSteps | ClosedGap | None:
+def _told(file: Path, sample_time: float, entries: Sequence[ExperimentEntry]) -> ContradictedSteps | ClosedGap | None:
     try:
         names = columns_of(file).names
     except UserError:  # a format that cannot list its columns
@@ -109,9 +121,21 @@ def _told(file: Path, sample_time: float) -> ContradictedSteps | ClosedGap | Non
         same = [u for u, s in seconds.items() if any(abs(one * s / sample_time - 1.0) < _SAME for one in (usual, mean))]
         if not same:
             return ContradictedSteps(file.name, name, usual, unit, sample_time)
-        gap = longest_gap(stamps * seconds[same[0]])
-        return None if gap is None or gap.of_summer_time else ClosedGap(file.name, name, same[0], gap)
+        gaps = (_gap_within(stamps * seconds[same[0]], entry) for entry in entries)
+        return next((ClosedGap(file.name, name, same[0], *found) for found in gaps if found is not None), None)
     return None
+
+
+def _gap_within(stamps: NDArray[np.float64], entry: ExperimentEntry) -> tuple[Gap, tuple[int, int] | None] | None:
+    """The longest gap of a file's stamps (N,), in s, within an experiment, and its rows. Those of files that follow each other are not
+    the file's.
+    """
+    counted = entry.join != "concatenate"
+    start, stop = (counted and entry.rows) or (0, len(stamps))
+    gap = longest_gap(stamps[start:stop])
+    if gap is None or gap.of_summer_time:
+        return None
+    return replace(gap, after=start + gap.after, start=float(stamps[0])), (start, stop) if counted else None
 
 
 def _time_entry(column: str, unit: str) -> str:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from greybox_torch.drafting.own_units import own_unit_of_time, own_units
 from greybox_torch.drafting.runs import Run, names_of
-from greybox_torch.files import toml_text
+from greybox_torch.files import toml_key, toml_text
 
 
-def own_columns(run: Run, first: Run) -> dict[str, str]:
-    """The entries of an experiment's `columns`, in TOML: of columns with another name or unit than in the ``first`` run."""
-    own: dict[str, str] = {}
+def own_columns(run: Run, first: Run) -> dict[str, dict[str, str]]:
+    """The entries of an experiment's `columns`: of columns with another name or unit than in the ``first`` run."""
+    own: dict[str, dict[str, str]] = {}
     units = own_units(run, first)
     for draft, drafted in zip(run.table.channels, first.table.channels, strict=False):
         unit = units[draft.name].file_unit if draft.name in units else None
@@ -28,9 +28,19 @@ def guessed_units(run: Run, first: Run) -> str:
     return "; ".join(f"{channel}: {unit.guess}" for channel, unit in own_units(run, first).items() if unit.guess)
 
 
-def _entry(column: str, key: str, unit: str | None) -> str:
-    text = toml_text(column)
-    return text if unit is None else f"{{ column = {text}, {key} = {toml_text(unit)} }}"
+def _entry(column: str, key: str, unit: str | None) -> dict[str, str]:
+    return {"column": column} | ({} if unit is None else {key: unit})
+
+
+def in_toml(own: Mapping[str, Mapping[str, str]]) -> str:
+    """Entries of `columns` as they stand on a card."""
+    entries = {
+        name: toml_text(entry["column"])
+        if len(entry) == 1
+        else f"{{ {', '.join(f'{key} = {toml_text(value)}' for key, value in entry.items())} }}"
+        for name, entry in own.items()
+    }
+    return ", ".join(f"{toml_key(name)} = {entry}" for name, entry in entries.items())
 
 
 def of_further_runs(runs: Sequence[Run]) -> list[str]:

@@ -4,6 +4,7 @@ they are in another structure: "log.az" for "az".
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from greybox_torch.data.column_units import without_unit
@@ -28,7 +29,7 @@ def likened(first: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
 
 def of_the_same_last_name(first: Mapping[str, str], found: Mapping[str, str], columns: Sequence[str]) -> dict[str, str]:
     """By channel that has a column in the ``first`` file and none ``found`` in this one, the free column that is called so within its
-    structure; none where two are.
+    structure; none where two are, or where two channels are called so.
     """
     free = [column for column in columns if column not in found.values()]
     alike: dict[str, str] = {}
@@ -36,7 +37,8 @@ def of_the_same_last_name(first: Mapping[str, str], found: Mapping[str, str], co
         own = [column for column in free if _last(column) == _last(known)]
         if channel not in found and len(own) == 1:
             alike[channel] = own[0]
-    return alike
+    taken = Counter(alike.values())
+    return {channel: column for channel, column in alike.items() if taken[column] == 1}
 
 
 def _last(column: str) -> str:

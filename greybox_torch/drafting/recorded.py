@@ -13,6 +13,7 @@ from greybox_torch.data.checks import DAY
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.dates import are_dates, are_times_of_day
 from greybox_torch.data.readers import read_table
+from greybox_torch.data.readers.order_of_dates import OrderOfDates
 from greybox_torch.data.readers.table import BadCell, Table
 from greybox_torch.errors import UserError
 
@@ -30,7 +31,8 @@ class Recorded:
     with what was found and where: here and there, those samples are missing in ``columns``; else they are not among them. ``marks`` has by
     column such texts as may stand for missing samples, which are no faults, and ``marked_at`` where the first of them is. ``stamps`` are
     columns of dates or times of day. ``lines`` has the line of every sample, where there are lines. ``dates`` has, by a column of times of
-    day, the column of dates beside it, which were added to these times and is not among the columns.
+    day, the column of dates beside it, which were added to these times and is not among the columns. ``orders`` has by column what it
+    tells of dates such as 03/04/2026.
     """
 
     path: Path
@@ -44,6 +46,7 @@ class Recorded:
     stamps: frozenset[str] = frozenset()
     lines: Sequence[int] | None = None
     dates: Mapping[str, str] = field(default_factory=dict)
+    orders: Mapping[str, OrderOfDates] = field(default_factory=dict)
 
     @property
     def samples(self) -> int:
@@ -82,6 +85,7 @@ def recorded(path: Path) -> Recorded:
         table.stamps,
         table.lines,
         dict([pair] if pair else []),
+        table.dates,
     )
 
 
@@ -113,6 +117,7 @@ def _read(path: Path, names: Sequence[str]) -> tuple[Table, _Odd]:
     columns: dict[str, NDArray[np.float64]] = {}
     units: dict[str, str] = {}
     stamps: frozenset[str] = frozenset()
+    orders: dict[str, OrderOfDates] = {}
     lines, all_odd = None, _Odd()
     for name in names:
         one, odd = _column(path, name)
@@ -127,8 +132,9 @@ def _read(path: Path, names: Sequence[str]) -> tuple[Table, _Odd]:
         columns |= one.columns
         units |= one.units
         stamps |= one.stamps
+        orders |= one.dates
         lines = one.lines
-    return Table(path, columns, lines, units, stamps=stamps), all_odd
+    return Table(path, columns, lines, units, stamps=stamps, dates=orders), all_odd
 
 
 def _column(path: Path, name: str) -> tuple[Table | None, list[UserError]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -118,6 +119,22 @@ class InMillikelvin(Plate):
 
     def output(self, x, u, p):
         return {"T1": x.T1, "T2": 1000.0 * x.T2}
+
+
+def test_channels_that_an_experiment_converts_itself_are_not_asked_for(tmp_path: Path) -> None:
+    """The factor of [channels] is not that of all experiments."""
+    of_card = {n: Channel(n, "", factor=1.0) for n in ("P1", "P2", "T1", "T2")}
+    channels = "\n".join(f'{name} = {{ column = "{name}" }}' for name in of_card)
+    for own, asked in (
+        ("", 1),
+        ('columns = { T2 = { column = "T", scale = 0.001 } }', 0),
+        ('columns = { T2 = "T" }', 1),
+    ):
+        (tmp_path / "dataset.toml").write_text(
+            f'sample_time = 1.0\n[channels]\n{channels}\n[[experiment]]\nname = "a"\nfile = "a.csv"\n{own}\n'
+        )
+        data = replace(recordings(), channels=of_card, path=tmp_path / "dataset.toml")
+        assert len([*exchanged._of_other_units(data, InMillikelvin())]) == asked
 
 
 def test_channels_of_other_units_may_be_exchanged_too() -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from greybox_torch.api.data_warnings import data_warnings
 from greybox_torch.checking.percentages import percentages
-from greybox_torch.data import DataSet, Recording
+from greybox_torch.data import DataSet, Recording, load_dataset
 
 
 def recorded(values: list[float], unit: str) -> DataSet:
@@ -25,7 +25,18 @@ def test_a_throttle_in_percent() -> None:
     assert told.startswith('channel "throttle": has the unit "1" and values from 4.6 to 100, as of a share in percent')
     assert told.endswith("write: values divided by 100 if so")
     (of_card,) = percentages(replace(data, path=Path("dataset.toml")))
-    assert of_card.write == 'throttle = { …, file_unit = "%" } if so'
+    assert of_card.write == 'throttle = { …, file_unit = "%" } if so, or scale = 1.0 in its line if it is none'
+
+
+def test_a_scale_on_the_card_says_that_it_is_none(tmp_path: Path) -> None:
+    """Seen: nothing silenced it, and the file_unit that was advised is refused beside a scale."""
+    (tmp_path / "run.csv").write_text("\n".join(["n", *(str(k) for k in range(100))]))
+    card = tmp_path / "dataset.toml"
+    for scale, told in (("", 1), (", scale = 1.0", 0)):
+        line = f'"a b" = {{ column = "n", unit = "1"{scale} }}'
+        card.write_text(f'sample_time = 0.1\n[channels]\n{line}\n[[experiment]]\nname = "a"\nfile = "run.csv"\n')
+        found = [*percentages(load_dataset(card))]
+        assert len(found) == told and all(one.write.startswith('"a b" = {') for one in found)
 
 
 @pytest.mark.parametrize(

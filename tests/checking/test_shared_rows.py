@@ -68,6 +68,12 @@ def test_not_told(tmp_path: Path, experiments: tuple[str, ...]) -> None:
     assert told(tmp_path, *experiments) == []
 
 
+@pytest.mark.parametrize("own", ['{ column = "u", scale = 1.0 }', '{ column = "u" }', '{ expr = "u" }'])
+def test_the_same_column_of_another_scale_is_no_other_run(tmp_path: Path, own: str) -> None:
+    (one,) = told(tmp_path, A, A + JUDGED + f"columns = {{ u = {own} }}")
+    assert "both have all of a.csv" in one
+
+
 @pytest.mark.parametrize("command", ["check", "inspect", "simulate"])
 def test_commands_warn(motor_folder: Callable[..., Path], tmp_path: Path, command: str) -> None:
     path = motor_folder() / "dataset.toml"

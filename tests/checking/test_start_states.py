@@ -84,4 +84,4 @@ def test_a_start_that_shows_another_state_is_noted() -> None:
     """Seen: a wall that began at the air's temperature without a word."""
     (note,) = (f for f in gt.check(Zone()).findings if "first sample" in f.found)
     assert note.level == "note" and note.found.startswith("state 'wall' begins with the first sample of air")
-    assert 'State("wall", …, initial=0.0)' in note.write
+    assert 'State("wall", …, initial=…), or wall = { value = … } under [model.initial] on the card' in note.write

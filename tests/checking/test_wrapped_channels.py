@@ -82,3 +82,19 @@ def test_what_to_write_mends_it(tmp_path: Path, entry: str, written: str) -> Non
     assert whole and not [one for one in data_warnings(mended, None) if "turn" in one.found]
     first = mended.recordings[0].signals["q"]
     np.testing.assert_allclose(first - first[0], (ANGLE - ANGLE[0])[: len(first)], atol=1e-3)
+
+
+def test_what_to_write_of_an_experiments_own_column(tmp_path: Path) -> None:
+    """Seen: the line in [channels] was to be changed, which has no effect where an experiment has its own column."""
+    (tmp_path / "run.csv").write_text("\n".join(["deg", *(f"{count * 360 / 16384!r}" for count in COUNTS.tolist())]))
+    card, top = tmp_path / "dataset.toml", 'sample_time = 0.001\n[channels]\nq = { column = "q", unit = "rad" }\n'
+    text = f'{top}[[experiment]]\nname = "run"\nfile = "run.csv"\n'
+    card.write_text(f'{text}columns = {{ q = {{ column = "deg", file_unit = "deg" }} }}\n')
+    found = [one for one in data_warnings(load_dataset(card), None) if "turn" in one.found]
+    written = "columns = { q = { expr = 'unwrap(deg, 360)', … } }"
+    assert found and all(one.write.startswith(f"{written} in that experiment") for one in found)
+    card.write_text(text + written.replace("…", 'file_unit = "deg"') + "\n")
+    mended = load_dataset(card)
+    assert not [one for one in data_warnings(mended, None) if "turn" in one.found]
+    first = mended.recordings[0].signals["q"]
+    np.testing.assert_allclose(first - first[0], (ANGLE - ANGLE[0])[: len(first)], atol=1e-3)

@@ -74,6 +74,16 @@ def test_what_does_not_contradict_is_read(tmp_path: Path, unit: str, channel: st
     np.testing.assert_allclose(read, factor * np.arange(40.0))
 
 
+def test_what_to_write_of_an_experiments_own_column(tmp_path: Path) -> None:
+    with pytest.raises(UserError):
+        loaded(tmp_path, "deg", 'unit = "rad"')
+    card = tmp_path / "dataset.toml"
+    card.write_text(card.read_text() + '\ncolumns = { q = "q" }\n')
+    with pytest.raises(UserError) as refused:
+        gt.load_dataset(card)
+    assert 'expected columns = { q = { column = "q", file_unit = "deg" } } in that [[experiment]]' in str(refused.value)
+
+
 def test_what_to_write_if_the_file_is_wrong_is_read(tmp_path: Path) -> None:
     expr = 'expr = "0.555555556*q -17.7777778", unit = "degC"'
     with pytest.raises(UserError, match="both"):

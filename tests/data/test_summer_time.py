@@ -32,15 +32,29 @@ def night(folder: Path, start: str, at: int, hours: int, step: int = 5) -> Path:
     return folder / "dataset.toml"
 
 
-def test_an_hour_left_out_in_spring(tmp_path: Path) -> None:
-    path = night(tmp_path, "2026-03-29 00:00", 24, 1)
+@pytest.mark.parametrize(
+    ("step", "start", "last"),
+    [
+        (5, "2026-03-29 00:00", "2026-03-29 01:55:00"),
+        (15, "2026-03-28 20:00", "2026-03-29 01:45:00"),
+        (30, "2026-03-28 14:00", "2026-03-29 01:30:00"),
+        (60, "2026-03-28 02:00", "2026-03-29 01:00:00"),
+    ],
+)
+def test_an_hour_left_out_in_spring(tmp_path: Path, step: int, start: str, last: str) -> None:
+    """Seen: steps of 15 minutes and more made it samples that were lost."""
+    path = night(tmp_path, start, 24, 1, step)
+    assert not any("missing in" in w.found for w in data_warnings(gt.load_dataset(path), None))
     (told,) = (w for w in data_warnings(gt.load_dataset(path), None) if "gap" in w.found)
-    assert "(2026-03-29 01:55:00 to 2026-03-29 03:00:00; UTC where" in told.found
+    assert f"({last} to 2026-03-29 03:00:00; UTC where" in told.found
     assert "as where local time is set to summer time; then nothing is missing" in told.found
-    assert "sample_time = 300 in the place of time" in told.write
+    assert f"sample_time = {60 * step} in the place of time" in told.write
     text = gt.card(tmp_path / "night.csv").text
-    assert "local time is set to summer time" in text and "Write two experiments" not in text
-    path.write_text(CARD.replace('time = "Timestamp"', "sample_time = 300.0"))
+    assert (
+        "set to summer time.\n# Then nothing is missing: give time stamps in UTC" in text
+        and "Write two experiments" not in text
+    )
+    path.write_text(CARD.replace('time = "Timestamp"', f"sample_time = {60.0 * step}"))
     assert not any("gap" in w.found for w in data_warnings(gt.load_dataset(path), None))
 
 

@@ -98,7 +98,7 @@ def test_time_stamps(text: str, seconds: float) -> None:
     "text", ["24:00:00", "12:61:00", "2026-02-30 12:00:00", "2026-02-30", "1:5", "12:00", "٣:00:00", "1e3"]
 )
 def test_what_is_no_time_stamp(text: str) -> None:
-    with pytest.raises(ValueError, match=r"time stamp|time of day|day is out of range|day .* must be in range"):
+    with pytest.raises(ValueError, match=r"time stamp|time of day|no such date"):
         TimeStamps().seconds(text)
 
 

@@ -66,8 +66,8 @@ def test_an_input_as_recorded(undecided) -> None:
     assert found.content(undecided.data.path)["inputs"] == {"voltage": {"kind": "as recorded", "recording": "steps"}}
     notes = " ".join(found.notes)
     assert (
-        "Kept as in steps, as asked for: voltage. That is what the prediction counts on (beyond its end, backwards)"
-        in notes
+        "Kept as in steps, as asked for: voltage. The predicted differences hold for these inputs "
+        "(beyond the end of that recording, backwards); record what really occurs." in notes
     )
     unasked = replace(found, limits=replace(found.limits, not_in_steps=("voltage",)))
     assert any(

@@ -156,7 +156,17 @@ def test_exchanged_columns_are_told_though_they_have_a_scale(tmp_path: Path) -> 
 def test_of_an_experiments_own_column(tmp_path: Path) -> None:
     card = written(tmp_path, 'a = { column = "x", unit = "rad/s" }')
     card.write_text(card.read_text() + 'columns = { a = "n_rpm" }\n')
-    assert [c.place for c in contradictions(card)] == ['[[experiment]] "run", channel "a"']
+    (told,) = contradictions(card)
+    assert told.place == '[[experiment]] "run", channel "a"'
+    own = 'columns = { a = { column = "n_rpm", %s } } in that [[experiment]]'
+    unit, scale = own % 'file_unit = "rpm"', own % "scale = 1.0"
+    assert told.write == f"{unit}; or, if the name is wrong, {scale}"
+    card = written(tmp_path, 'time = "t"')
+    card.write_text(card.read_text() + 'columns = { time = "t_ms" }\n')
+    (told,) = contradictions(card)
+    assert told.write.startswith(
+        'columns = { time = { column = "t_ms", unit = "ms" } } in that [[experiment]], which converts'
+    )
 
 
 def test_no_false_alarm_on_any_card_here() -> None:

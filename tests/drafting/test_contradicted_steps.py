@@ -78,3 +78,18 @@ def test_a_column_of_text_before_the_time_stamps(tmp_path: Path) -> None:
     (tmp_path / "run.csv").write_text("\n".join([f"time of day,{first}", *(f"noon,{row}" for row in rows)]))
     (told,) = contradicted_steps(load_dataset(path))
     assert told.column == "time_s"
+
+
+def test_a_gap_between_experiments_is_none_within_them(tmp_path: Path) -> None:
+    """Seen: still told of a card that was divided there."""
+    path = card(tmp_path, "time_s", 10.0 * np.delete(np.arange(100), range(40, 60)), 10.0)
+    (told,) = contradicted_steps(load_dataset(path))
+    assert told.write == (
+        'time = "time_s" in its place; or two experiments in place of this one: rows = [0, 40] and rows = [40, 80]'
+    )
+    whole = path.read_text()
+    path.write_text(f'{whole}rows = [0, 40]\n[[experiment]]\nname = "after"\nfile = "run.csv"\nrows = [40, 80]\n')
+    assert list(contradicted_steps(load_dataset(path))) == []
+    path.write_text(f"{whole}rows = [30, 80]\n")
+    (told,) = contradicted_steps(load_dataset(path))
+    assert "(after sample 39, the first is 0" in told.found and "rows = [30, 40] and rows = [40, 80]" in told.write

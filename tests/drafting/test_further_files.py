@@ -9,7 +9,7 @@ import pytest
 import scipy.io
 
 import greybox_torch as gt
-from greybox_torch.drafting.likened import likened
+from greybox_torch.drafting.likened import likened, of_the_same_last_name
 
 N = 100
 T = 0.02 * np.arange(N)
@@ -66,6 +66,10 @@ def test_a_unit_that_follows_the_letter_of_an_output_is_converted(tmp_path: Path
 )
 def test_columns_with_one_ending_or_beginning(columns: list[str], found: dict[str, str]) -> None:
     assert likened({"v": "u", "w": "y"}, columns) == found
+
+
+def test_one_column_is_not_taken_for_two_channels() -> None:
+    assert of_the_same_last_name({"a": "x.v", "b": "y.v", "c": "x.w"}, {}, ["z.v", "z.w"]) == {"c": "z.w"}
 
 
 def test_the_first_column_of_a_matrix_may_be_the_time(tmp_path: Path) -> None:
@@ -129,12 +133,35 @@ def test_units_of_further_files_that_are_not_those_of_the_first(tmp_path: Path) 
         'angle = { column = "log.angle", file_unit = "rad" }, time = { column = "log.t", unit = "s" }' in drafted.text
     )
     assert 'voltage = { column = "voltage [mV]", file_unit = "mV" }' in drafted.text and 'time = "t" }' in drafted.text
+    told = drafted.content(tmp_path)["runs"]
+    assert [run["name"] for run in told] == ["a", "b", "c"] and told[0]["columns"] == {}
+    assert told[1]["columns"]["angle"] == {"column": "log.angle", "file_unit": "rad"}
+    assert told[2]["columns"]["time"] == {"column": "t"}
     drafted.save()
     first, *others = gt.load_dataset(drafted.path).recordings
     for other in others:
         np.testing.assert_allclose(other.signals["angle"], first.signals["angle"], atol=1e-12)
         np.testing.assert_allclose(other.time, first.time, atol=1e-12)
     np.testing.assert_allclose(others[1].signals["voltage"], first.signals["voltage"], atol=1e-12)
+
+
+class Room(Arm):
+    """A temperature in the place of the angle."""
+
+    outputs = (gt.Output("angle", "degC"),)
+
+
+@pytest.mark.parametrize(("added", "unit"), [(0.0, "degC"), (273.15, "K")])
+def test_a_unit_with_another_zero_is_told_by_its_size(tmp_path: Path, added: float, unit: str) -> None:
+    temperature = 15.0 + Q
+    for name, column, values in (("a", "angle [K]", temperature + 273.15), ("b", "angle", temperature + added)):
+        rows = zip(T, V, values, strict=True)
+        (tmp_path / f"{name}.csv").write_text(f"t,voltage,{column}\n" + "".join(f"{t},{v},{q}\n" for t, v, q in rows))
+    drafted = gt.card([tmp_path / "a.csv", tmp_path / "b.csv"], Room())
+    assert any(f"no unit is said: {unit} by its size" in line for line in drafted.open)
+    drafted.save()
+    first, second = gt.load_dataset(drafted.path).recordings
+    np.testing.assert_allclose(second.signals["angle"], first.signals["angle"], atol=1e-9)
 
 
 def test_a_column_of_the_same_name_inside_of_a_structure(tmp_path: Path) -> None:

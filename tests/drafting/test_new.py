@@ -107,3 +107,10 @@ def test_names_of_installed_modules(tmp_path: Path, name: str) -> None:
     """Seen: torch.py written, and every script in that folder ended in a circular import."""
     with pytest.raises(gt.UserError, match=f"is the name of an installed module, which {name}.py would hide"):
         gt.new(name, path=tmp_path / f"{name}.py")
+
+
+def test_a_folder_of_that_name_is_no_installed_module(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: a folder motor/ of recordings in the current one, and no model could be called motor."""
+    (tmp_path / "recorded_motor").mkdir()
+    monkeypatch.syspath_prepend(tmp_path)
+    assert gt.new("recorded_motor", path=tmp_path / "models" / "recorded_motor.py").name == "RecordedMotor"

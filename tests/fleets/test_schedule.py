@@ -17,6 +17,7 @@ from greybox_torch.api import fleet
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.fleets import cluster, schedule
 from greybox_torch.fleets.job import Job
+from greybox_torch.fleets.row import Row
 from greybox_torch.fleets.schedule import Killed, share_out
 
 
@@ -117,6 +118,33 @@ def test_workers_elsewhere_have_to_see_the_folder_of_every_card(monkeypatch: pyt
     others = [replace(job, card=Path(card)) for card in ("/x/a.toml", "/y/b.toml", "/x/c.toml")]
     fleet._run(others, "tcp://there:1", None, Path("/out"), lambda row: None, lambda state, row, kept: state)
     assert asked == [Path("/out"), Path("/x"), Path("/y")]
+
+
+def test_what_is_settled_is_told_at_once_and_kept(monkeypatch: pytest.MonkeyPatch, job: Job) -> None:
+    """Seen: nothing was told before all files were read, and an interruption left a table without a row."""
+    found: list[str] = []
+
+    def settled(one: Job) -> tuple[Row, bool]:
+        if one.name == "p2":
+            raise KeyboardInterrupt
+        return Row(one.name, str(one.card), "nothing"), True
+
+    monkeypatch.setattr(fleet, "without_a_diagnosis", settled)
+    others = [replace(job, name=name) for name in ("p0", "p1", "p2")]
+    rows, complete = fleet._run(
+        others, None, 1, Path("/out"), lambda row: found.append(row.dataset), lambda s, row, kept: s
+    )
+    assert found == [row.dataset for row in rows] == ["p0", "p1"] and not complete
+
+
+def test_a_card_that_cannot_be_read_is_settled_beside_a_good_one(tmp_path: Path, job: Job) -> None:
+    (tmp_path / "good.toml").write_text(
+        'sample_time = 1.0\n[channels]\nu = { column = "u" }\n[[experiment]]\nname = "a"\nfile = "a.csv"\n'
+    )
+    (tmp_path / "bad.toml").write_text("sample_time = \n")
+    both = [replace(job, name=n, card=tmp_path / f"{n}.toml", folder=tmp_path / n) for n in ("good", "bad")]
+    ((name, (row, kept)),) = fleet._settled(both, 2)
+    assert (name, row.answer, row.failure, kept) == ("bad", "failed", "input", False)
 
 
 def test_without_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -66,14 +66,15 @@ def _read_samples(path: Path, file: TextIO, layout: Layout, marks: frozenset[tup
                 written[column].append(cell)
             else:
                 append(_number(path, line, column, cell, layout.decimal))
-    notes = list(_told(path, found))
+    notes, dates = list(_told(path, found)), {}
     for column, cells in written.items():  # all of a column tell which number of a date is the day
         stamps = TimeStamps(cells)
         values[column].extend(_seconds(path, *at, stamps) for at in zip(lines, repeat(column), cells))
         notes += [f'column "{column}" of {path.name}: {stamps.note}'] if stamps.note else []
+        dates |= {column: stamps.order} if stamps.order else {}
     units = layout.units | dict.fromkeys(written, "s")
     columns = {column: np.array(samples) for column, samples in values.items()}
-    return Table(path, columns, lines, units, tuple(notes), layout.stamps)
+    return Table(path, columns, lines, units, tuple(notes), layout.stamps, dates)
 
 
 def _told(path: Path, found: Counter[tuple[str, str]]) -> tuple[str, ...]:

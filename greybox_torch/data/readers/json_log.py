@@ -31,14 +31,14 @@ def read_json(path: Path, columns: Collection[str]) -> Table:
         return _from_records(path, content, columns, None)
     if not isinstance(content, dict):
         raise UserError(f"{path}: holds neither an object nor a list; expected arrays by name, or a list of records")
-    vectors = {}
+    read = {}
     for column in columns:
         root = root_of(column, content)
         require(path, [column] if root not in content else [], list(content))
         place = f'{path}, column "{column}"'
         found = by_index(content[root] if column == root else inside(place, content[root], steps_of(column)[1:]))
-        vectors[column] = as_vector(path, column, _numbers(place, found))
-    return Table(path, vectors)
+        read[column] = _numbers(place, found)
+    return _table(path, read)
 
 
 def read_json_lines(path: Path, columns: Collection[str]) -> Table:
@@ -76,7 +76,7 @@ def _from_records(path: Path, records: list[Any], columns: Collection[str], line
                 f"{path}, {where}: found {json.dumps(record)[:40]}, expected a record: an object with members"
             )
     known = list(dict.fromkeys(name for record in records for name in record))
-    vectors = {}
+    read = {}
     for column in columns:
         if column in known:
             values = [record.get(column) for record in records]
@@ -85,8 +85,17 @@ def _from_records(path: Path, records: list[Any], columns: Collection[str], line
             values = [_member(record, steps_of(column)) for record in records]
             if records and all(value is None for value in values):
                 raise NoSuchColumn(f'{path}: no record has "{column}"; found {", ".join(known)}', column)
-        vectors[column] = as_vector(path, column, _numbers(f'{path}, column "{column}"', values, lines))
-    return Table(path, vectors, lines)
+        read[column] = _numbers(f'{path}, column "{column}"', values, lines)
+    return _table(path, read, lines)
+
+
+def _table(path: Path, read: dict[str, tuple[NDArray, TimeStamps | None]], lines: list[int] | None = None) -> Table:
+    """Of columns, with how dates and times in them were read; None for those that have none."""
+    vectors = {column: as_vector(path, column, values) for column, (values, _) in read.items()}
+    stamps = {column: found for column, (_, found) in read.items() if found is not None}
+    notes = tuple(f'column "{column}" of {path.name}: {one.note}' for column, one in stamps.items() if one.note)
+    orders = {column: one.order for column, one in stamps.items() if one.order}
+    return Table(path, vectors, lines, dict.fromkeys(stamps, "s"), notes, frozenset(stamps), orders)
 
 
 def _member(record: Any, steps: list[Step]) -> Any:
@@ -101,34 +110,34 @@ def _member(record: Any, steps: list[Step]) -> Any:
     return record
 
 
-def _numbers(place: str, values: Any, lines: list[int] | None = None) -> NDArray[np.float64]:
+def _numbers(place: str, values: Any, lines: list[int] | None = None) -> tuple[NDArray, TimeStamps | None]:
     if isinstance(values, np.ndarray):
-        return values
+        return values, None
     if not isinstance(values, list):
         raise UserError(f"{place}: found {json.dumps(values, default=str)[:40]}, expected a list of numbers")
-    return np.fromiter(_each(place, values, lines), dtype=np.float64, count=len(values))
-
-
-def _each(place: str, values: list[Any], lines: list[int] | None) -> Iterator[float]:
     texts = [v for v in values if isinstance(v, str) and not is_missing(v.strip())]
-    as_times = bool(texts) and is_time_stamp(texts[0])
-    stamps = TimeStamps(texts if as_times else ())
+    stamps = TimeStamps(texts) if texts and is_time_stamp(texts[0]) else None
+    return np.fromiter(_each(place, values, lines, stamps), dtype=np.float64, count=len(values)), stamps
+
+
+def _each(place: str, values: list[Any], lines: list[int] | None, stamps: TimeStamps | None) -> Iterator[float]:
     for k, value in enumerate(values):
         if value is None or (isinstance(value, str) and is_missing(value.strip())):
             yield float("nan")
             continue
-        if as_times and isinstance(value, str):
+        line = f"line {lines[k]}, " if lines else ""
+        if stamps is not None and isinstance(value, str):
             try:
                 yield stamps.seconds(value)
                 continue
-            except ValueError:
-                pass
+            except ValueError as error:
+                why = f"found {json.dumps(value)[:40]}: {error}"
+                raise UserError(f"{place}, {line}sample {k} (the first is 0): {why}") from None
         if isinstance(value, bool | int | float):
             try:
                 yield float(value)
                 continue
             except OverflowError:
                 pass
-        line = f"line {lines[k]}, " if lines else ""
         shown = json.dumps(value)[:40] if not isinstance(value, int) else "a number of very many digits"
         raise UserError(f"{place}, {line}sample {k} (the first is 0): found {shown}, expected a number")

@@ -1,4 +1,4 @@
-"""Parquet tables. Nulls and NaN are missing samples; dates and times are seconds since the first of them."""
+"""Parquet tables. Nulls and NaN are missing samples; dates and times are seconds since 1970."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.readers.table import MOST_SAMPLES, Table, as_vector, check_declared, require
@@ -39,10 +38,7 @@ def _numbers(path: Path, column: str, table: Any) -> NDArray:
     values = table.column(column)
     kind = values.type
     if pa.types.is_timestamp(kind) or pa.types.is_duration(kind):
-        stamps = values.to_numpy()
-        known = stamps[~np.isnat(stamps)]
-        since = stamps - known[0] if pa.types.is_timestamp(kind) and known.size else stamps
-        return np.where(np.isnat(stamps), np.nan, since.astype("timedelta64[ns]") / np.timedelta64(1, "s"))
+        return values.to_numpy()
     if not (
         pa.types.is_integer(kind)
         or pa.types.is_floating(kind)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.checks import KINDS
+from greybox_torch.data.readers.order_of_dates import OrderOfDates
 from greybox_torch.errors import UserError, did_you_mean
 
 MOST_SAMPLES = 200_000_000
@@ -42,7 +43,7 @@ class Table:
     """Columns of a file as float64 arrays of shape (N,), and where the format has lines, the line of every sample.
 
     `units` are by column, where the file says them; `notes` say what was done to the samples while reading. `stamps` are columns that the
-    file has as dates or times of day, where the reader tells.
+    file has as dates or times of day, where the reader tells; `dates`, by column, what it tells of dates such as 03/04/2026.
     """
 
     path: Path
@@ -51,6 +52,7 @@ class Table:
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
     stamps: frozenset[str] = frozenset()
+    dates: Mapping[str, OrderOfDates] = field(default_factory=dict)
 
     def place(self, column: str, sample: int) -> str:
         """Where a sample stands in the file, to begin a message with."""

@@ -4,9 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from datetime import date
+from dataclasses import dataclass
+from itertools import pairwise
 
 from greybox_torch.data.checks import DAY
+from greybox_torch.data.readers.order_of_dates import (
+    NO_DATE,
+    OrderOfDates,
+    days_of,
+    days_to,
+    instead_of_year_first,
+    is_date,
+    numbers_of,
+)
 
 UNDERSTOOD = (
     "understood are 2026-03-01 12:00, 01.03.2026 12:00, 13/03/2026 12:00, 03/13/2026 12:00 PM, 01-Mar-2026 12:00 and 20260301T1200, each "
@@ -14,7 +24,6 @@ UNDERSTOOD = (
 )
 """Of dates, for messages."""
 
-_EPOCH = date(1970, 1, 1).toordinal()
 _STAMP = re.compile(
     r"""(?:(?P<date>(?P<y>\d{4})[-/](?P<m>\d{1,2})[-/](?P<d>\d{1,2}) | (?P<d2>\d{1,2})\.(?P<m2>\d{1,2})\.(?P<y2>\d{4}|\d{2})
             | (?P<d3>\d{1,2})[- ](?P<name>[A-Za-zä]{3,9})\.?[- ](?P<y3>\d{4})
@@ -37,6 +46,16 @@ _MONTHS = {
 } | {"mär": 3, "mrz": 3, "mai": 5, "okt": 10, "dez": 12}
 
 
+@dataclass
+class _Day:
+    """Samples of one ``date`` that follow each other, the first and the last; ``either``: the date may be one of two."""
+
+    date: str
+    either: bool
+    first: str
+    last: str
+
+
 class TimeStamps:
     """Turns the time stamps of one column into seconds: since 1970 where they have dates, else since midnight. A date
     alone is its midnight.
@@ -47,14 +66,19 @@ class TimeStamps:
     Attributes:
         day_first: whether the day comes before the month in such dates; None where nothing tells.
         note: what was concluded from dates that follow each other, for the user; else empty.
+        order: the same for further files, of which each may have one date alone; None where no date is of that kind.
     """
 
     def __init__(self, texts: Iterable[str] = (), day_first: bool | None = None) -> None:
         self._either: str | None = None
         self.day_first = day_first
         self.note = ""
+        self.order: OrderOfDates | None = None
+        self._year_first = ""
         if day_first is None:
-            self._look_for_the_order(texts)
+            days = _days_in(texts)
+            self._year_first = instead_of_year_first([day.date for day in days])
+            self._look_for_the_order([day for day in days if day.either])
 
     def seconds(self, text: str) -> float:
         """Raises ValueError for what is no time stamp, and for a date that may be one of two."""
@@ -86,15 +110,21 @@ class TimeStamps:
     def _days(self, found: re.Match[str]) -> int:
         if not _dated(found):
             return 0
+        if self._year_first:
+            raise ValueError(
+                f"the last number changes as the day does where the year comes first; expected a date like {self._year_first}"
+            )
         if found["either"] is not None:
             return self._days_of_two_readings(found["either"])
         day, year = (next(filter(None, (found[n], found[n + "2"], found[n + "3"]))) for n in "dy")
         month = _month(found["name"]) if found["name"] else int(found["m"] or found["m2"])
-        return date(_year(year), month, int(day)).toordinal() - _EPOCH
+        return days_to(int(year), month, int(day))
 
     def _days_of_two_readings(self, either: str) -> int:
-        one, other, year = map(int, re.split("[-/]", either))
+        one, other, _ = numbers_of(either)
         if self.day_first is None:
+            if not any(is_date(either, day_first=order) for order in (True, False)):
+                raise ValueError(NO_DATE)
             self._either = self._either or either
             if either != self._either:
                 raise ValueError(
@@ -102,29 +132,28 @@ class TimeStamps:
                 )
             if one != other:
                 return 0
-        day, month = (one, other) if self.day_first else (other, one)
-        return date(_year(str(year)), month, day).toordinal() - _EPOCH
+        return days_of(either, day_first=self.day_first is not False)
 
-    def _look_for_the_order(self, texts: Iterable[str]) -> None:
-        matches = ((text, found["either"]) for text in texts if (found := _match(text)) and found["either"])
-        at_changes: list[tuple[str, str]] = []
-        first = before = None
-        for text, either in matches:
-            first = first or (text, either)
-            if before is not None and either != before[1]:
-                at_changes.append((before[0], text))
-            before = text, either
-        if first is None:
+    def _look_for_the_order(self, days: list[_Day]) -> None:
+        """From the dates of two readings."""
+        if not days:
             return
-        steps = {order: _steps(first[0], at_changes, day_first=order) for order in (True, False)}
-        possible = [order for order in steps if steps[order] is not None]
-        within = [order for order in possible if at_changes and all(0.0 < s <= DAY for s in steps[order] or ())]
+        possible: tuple[bool, ...] = (True, False)
+        for day in days:
+            left = tuple(order for order in possible if is_date(day.date, day_first=order))
+            if not left:  # refused where it is read
+                break
+            possible = left
+        at_changes = [(before.last, after.first) for before, after in pairwise(days)]
+        steps = {order: _steps(at_changes, day_first=order) for order in possible}
+        within = [order for order in steps if at_changes and all(0.0 < s <= DAY for s in steps[order])]
         if len(possible) == 1:
             self.day_first = possible[0]
         elif len(within) == 1:
             self.day_first = within[0]
             order = "day before month" if within[0] else "month before day"
-            self.note = f'dates such as "{first[1]}" are read with the {order}, as they follow each other so'
+            self.note = f'dates such as "{days[0].date}" are read with the {order}, as they follow each other so'
+        self.order = OrderOfDates(days[0].date, self.day_first, self.note)
 
 
 def is_time_stamp(text: str) -> bool:
@@ -132,8 +161,7 @@ def is_time_stamp(text: str) -> bool:
     try:
         TimeStamps().seconds(text)
     except ValueError:
-        found = _match(text)
-        return found is not None and found["either"] is not None and _possible(text)
+        return False
     return True
 
 
@@ -149,22 +177,31 @@ def _match(text: str) -> re.Match[str] | None:
     return _STAMP.fullmatch(text) if text else None
 
 
+def _days_in(texts: Iterable[str]) -> list[_Day]:
+    """Few, of however many samples: these may be millions."""
+    days: list[_Day] = []
+    for text in texts:
+        found = _match(text)
+        if found is None or not _dated(found):
+            continue
+        if days and days[-1].date == found["date"]:
+            days[-1].last = text
+        else:
+            days.append(_Day(found["date"], found["either"] is not None, text, text))
+    return days
+
+
 def _dated(found: re.Match[str]) -> bool:
     return found["date"] is not None
 
 
-def _steps(first: str, at_changes: Iterable[tuple[str, str]], *, day_first: bool) -> list[float] | None:
-    """The seconds from one date to the next; None where one of them is no date in that order."""
+def _steps(at_changes: Iterable[tuple[str, str]], *, day_first: bool) -> list[float]:
+    """The seconds from one date to the next; of none, where one of them has no such date or time of day."""
     stamps = TimeStamps(day_first=day_first)
     try:
-        stamps.seconds(first)
         return [stamps.seconds(after) - stamps.seconds(before) for before, after in at_changes]
     except ValueError:
-        return None
-
-
-def _possible(text: str) -> bool:
-    return any(_steps(text, (), day_first=order) is not None for order in (True, False))
+        return [float("nan")]
 
 
 def _month(name: str) -> int:
@@ -172,12 +209,6 @@ def _month(name: str) -> int:
     if month is None:
         raise ValueError(f'"{name}" is no month; {UNDERSTOOD}')
     return month
-
-
-def _year(text: str) -> int:
-    """Of two digits, as 26, the year 2026."""
-    year = int(text)
-    return year if year > 99 else year + (2000 if year < 70 else 1900)
 
 
 def _offset(zone: str | None) -> float:
