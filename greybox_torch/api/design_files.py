@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import Card, read_card
+from greybox_torch.data.card import Card, card_at
 from greybox_torch.data.card_channels import Entry
 from greybox_torch.files import absolute, toml_key, toml_text
 
@@ -54,7 +54,7 @@ def card_text(data: DataSet, time: np.ndarray, reference: str, folder: Path, rem
     Columns, their units and the time stamps are as on the card of the old recordings, so that the experiment can be copied there.
     ``remarks`` are sentences for its head.
     """
-    card = read_card(data.path) if data.path is not None and data.path.is_file() else None
+    card = card_at(data.path)
     step, old = float(time[1] - time[0]), "that of the old ones" if data.path is None else _seen_from(data.path, folder)
     lines = [f"sample_time = {float(f'{step:.9g}')!r}"] if card is None else _clock(card, step)
     lines += [f'hold = "{data.hold}"', "", "[channels]"]

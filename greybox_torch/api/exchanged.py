@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.api.short_refits import REFITTED, Change, asked_of, beginnings, far_better, fit_after
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import card_at
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
@@ -77,9 +77,8 @@ def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:
 
 def _converted_by_experiments(data: DataSet) -> set[str]:
     """The channels that an experiment on the card converts otherwise than [channels] does."""
-    if data.path is None or not data.path.is_file():
-        return set()
-    own = [item for experiment in read_card(data.path).experiment for item in experiment.columns.items()]
+    card = card_at(data.path)
+    own = [item for experiment in (card.experiment if card else ()) for item in experiment.columns.items()]
     return {name for name, column in own if (column.expr, column.scale, column.file_unit) != (None, None, None)}
 
 

@@ -79,6 +79,14 @@ def _term(name: str, power: Fraction) -> str:
     return unit if power == 1 else f"{unit}^{power}" if power.denominator == 1 else f"{unit}^({power})"
 
 
+def known_dimension(unit: str) -> Dimension | None:
+    """The dimension of a unit as it is written; None where nothing is written, and for what is no unit, which is told elsewhere."""
+    try:
+        return dimension_of(unit)
+    except ValueError:
+        return None
+
+
 def dimension_of(unit: str) -> Dimension | None:
     """The dimension of a unit as it is written; None where nothing is written. Raises ValueError for what is no unit."""
     if not unit.strip():

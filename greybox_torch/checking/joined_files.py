@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import TIME, Card, read_card
+from greybox_torch.data.card import TIME, Card, card_at
 from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
@@ -73,11 +73,11 @@ class JoinedFiles:
 
 def joined_files(data: DataSet) -> dict[str, JoinedFiles]:
     """By the recording's name; without those whose card or files were replaced meanwhile."""
-    if data.path is None or not data.path.is_file():
-        return {}
     try:
-        card = read_card(data.path)
+        card = card_at(data.path)
     except UserError:
+        card = None
+    if card is None:
         return {}
     read, found = cache(read_table), {}
     for entry in card.experiment:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from greybox_torch.checking.dimensions import dimension_of
+from greybox_torch.checking.dimensions import dimension_of, known_dimension
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.in_unit import in_unit
@@ -36,8 +36,5 @@ def negative_masses(
 
 
 def _kind(unit: str) -> str:
-    try:
-        found = dimension_of(unit)
-    except ValueError:  # told elsewhere
-        return ""
+    found = known_dimension(unit)
     return next((kind for kind, dimension in _KINDS.items() if found == dimension), "")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import card_at
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.files import toml_key
 
@@ -51,8 +51,6 @@ def percentages(data: DataSet) -> Iterator[Percentage]:
 
 def _scaled(data: DataSet) -> set[str]:
     """The channels of which somebody gave the factor, in [channels] or for an experiment, and so has thought of the unit."""
-    if data.path is None or not data.path.is_file():
-        return set()
-    card = read_card(data.path)
-    cards = [card, *(card.of(experiment) for experiment in card.experiment)]
+    card = card_at(data.path)
+    cards = [card, *(card.of(experiment) for experiment in card.experiment)] if card else []
     return {name for one in cards for name, entry in one.channels.items() if "scale" in entry.model_fields_set}

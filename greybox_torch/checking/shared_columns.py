@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import Card, read_card
+from greybox_torch.data.card import Card, card_at
 from greybox_torch.data.card_channels import ChannelEntry
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.expression import Expression
@@ -33,9 +33,9 @@ class SharedColumn(InASentence):
 
 def shared_columns(data: DataSet) -> Iterator[SharedColumn]:
     """Of every two channels that are the same column, or computed from columns in the same way; none where data are from memory."""
-    if data.path is None or not data.path.is_file():
+    whole, told = card_at(data.path), set[tuple[str, str]]()
+    if whole is None:
         return
-    whole, told = read_card(data.path), set[tuple[str, str]]()
     for experiment in whole.experiment:
         card = whole.of(experiment)
         formulas = card.formulas(experiment)

@@ -9,7 +9,7 @@ from math import inf
 from pathlib import Path
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import Card, read_card
+from greybox_torch.data.card import Card, card_at
 from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.data_warning import InASentence
 
@@ -43,10 +43,9 @@ class SharedRows(InASentence):
 
 def shared_rows(data: DataSet) -> Iterator[SharedRows]:
     """Of every two experiments on the card of which one is judged on samples of the other; none where data are from memory."""
-    if data.path is None or not data.path.is_file():
+    card, held_out = card_at(data.path), data.held_out_by_default
+    if card is None or data.path is None:
         return
-    held_out = data.held_out_by_default
-    card = read_card(data.path)
     for one, other in combinations(card.experiment, 2):
         alike = one.rows == other.rows if held_out else one.role == other.role  # nothing of one is judged on the other
         if alike or _of_other_columns(card, one, other):  # runs that stand side by side in one file

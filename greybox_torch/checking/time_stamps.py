@@ -10,7 +10,7 @@ import numpy as np
 from greybox_torch.checking.as_in_the_file import rows_on_the_card
 from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet, Recording
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import card_at
 from greybox_torch.data.card_channels import TimeEntry
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, Lost, longest_gap, lost_samples, pieces_around
@@ -125,7 +125,7 @@ def _gap_of_joined(files: JoinedFiles, table: Table, gap: Gap) -> OddTime:
 
 def _clocks(data: DataSet) -> dict[str, TimeEntry]:
     """The time stamps of every experiment, as the card says; none where data are from memory."""
-    card = None if data.path is None or not data.path.is_file() else read_card(data.path)
+    card = card_at(data.path)
     return {e.name: time for e in card.experiment if (time := card.of(e).time)} if card else {}
 
 

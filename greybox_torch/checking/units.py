@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of
+from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of, known_dimension
 from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
@@ -49,7 +49,7 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
     found: dict[int, str] = {}
     units = {names.of(kind, i): q.unit for kind, of in _declared(model).items() for i, q in enumerate(of)}
     leaves = {
-        graph.leaf(kind, i): _dimension(q.unit) for kind, of in _declared(model).items() for i, q in enumerate(of)
+        graph.leaf(kind, i): known_dimension(q.unit) for kind, of in _declared(model).items() for i, q in enumerate(of)
     }
     text = lambda node: shown(graph, node, names)  # noqa: E731
     signals = dimensions(graph, traced.signals.values(), leaves, text, found.setdefault)
@@ -66,7 +66,7 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
         yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
     for name, node in traced.rates.items():
         unit = next(s.unit for s in model.states if s.name == name)
-        wanted = _dimension(unit)
+        wanted = known_dimension(unit)
         yield from _differs(
             f"the rate of state '{name}'",
             known[node],
@@ -78,7 +78,7 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
     for name, node in traced.outputs.items():
         unit = next(o.unit for o in model.outputs if o.name == name)
         yield from _differs(
-            f"output '{name}'", known[node], _dimension(unit), f"a value in {unit}", source, graph.lines.get(node)
+            f"output '{name}'", known[node], known_dimension(unit), f"a value in {unit}", source, graph.lines.get(node)
         )
     yield from _ports(model, of_signal, source)
 
@@ -108,14 +108,6 @@ def _differs(
 
 def _declared(model: GreyBoxModel) -> dict[str, list]:
     return {"x": list(model.states), "u": list(model.inputs), "p": list(model.declared_parameters)}
-
-
-def _dimension(unit: str) -> Dimension | None:
-    """None also for a unit that cannot be read, which is told elsewhere."""
-    try:
-        return dimension_of(unit)
-    except ValueError:
-        return None
 
 
 def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> Dimension | None:

@@ -64,9 +64,10 @@ class Transition:
 
     def _column(self, stage: int, column: int, known: set[tuple[int, int]]) -> list[str]:
         """Statements for one column of M[stage] A[stage], of what it adds to S, and of M[stage - 1]; ``known`` are entries of S so far."""
-        lines = ["{"]
+        lines, of_column = ["{"], self._of_column(column)
         for row in range(self.size):
-            terms, at, diagonal = self._terms(stage, column, row), f"[{column}][{row}]", row == column
+            terms = [_term(stage, k, str(row), e) for k, e in of_column if (row, k) in self.through[stage]]
+            at, diagonal = f"[{column}][{row}]", row == column
             if terms:
                 sign = "+=" if (row, column) in known else "="
                 lines += [f"const vec p{row} = {added(terms)};", f"S{at} {sign} p{row};"]
@@ -78,22 +79,16 @@ class Transition:
 
     def _looped_column(self, stage: int, column: int) -> str:
         """The same for all rows at once, zeros or not."""
-        of_column = [(k, entry) for (k, j), entry in sorted(self.entries.items()) if j == column]
-        terms = [scaled(f"M[{stage}][{k}][i]", f"A[{stage}][{e.place}]", e.constant) for k, e in of_column]
+        terms = [_term(stage, k, "i", e) for k, e in self._of_column(column)]
         lines = [f"for (int i = 0; i < NT; i++) {{ const vec p = {added(terms or ['vec{}'])}; S[{column}][i] += p;"]
         if stage:
             parts = [f"{_factor(stage)} * p", f"(i == {column} ? {_own(stage)} : vec{{}})"]
             lines.append(f"M[{stage - 1}][{column}][i] = {added(parts)};")
         return " ".join([*lines, "}"])
 
-    def _terms(self, stage: int, column: int, row: int) -> list[str]:
-        """The terms of one entry of M[stage] A[stage] that are not zero."""
-        of_column = [(k, entry) for (k, j), entry in sorted(self.entries.items()) if j == column]
-        return [
-            scaled(f"M[{stage}][{k}][{row}]", f"A[{stage}][{entry.place}]", entry.constant)
-            for k, entry in of_column
-            if (row, k) in self.through[stage]
-        ]
+    def _of_column(self, column: int) -> list[tuple[int, Entry]]:
+        """The rows and entries of one column of the Jacobian."""
+        return [(row, entry) for (row, j), entry in sorted(self.entries.items()) if j == column]
 
     def propagation(self) -> str:
         """Statements of ``q = S q + sum of M[s] b[s]`` over the stages s, with the partial derivatives b by parameter c."""
@@ -117,6 +112,11 @@ class Transition:
             terms = [f"M[{s}][{r}][{i}] * b{s}" for s in range(STAGES) if (i, r) in self.through[s]]
             lines += [f"w{i} += {added(terms)};"] if terms else []
         return "\n".join([*lines, "break;"])
+
+
+def _term(stage: int, through: int, row: str, entry: Entry) -> str:
+    """What a row of M[stage] A[stage] has of an ``entry`` of A, by the column ``through`` of M."""
+    return scaled(f"M[{stage}][{through}][{row}]", f"A[{stage}][{entry.place}]", entry.constant)
 
 
 def _factor(stage: int) -> str:

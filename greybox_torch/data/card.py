@@ -214,6 +214,11 @@ def _what_else(path: Path) -> str:
     return ""
 
 
+def card_at(path: Path | None) -> Card | None:
+    """The card that data were read from; None where they are from memory, or it is gone. Raises UserError as :func:`read_card` does."""
+    return None if path is None or not path.is_file() else read_card(path)
+
+
 def read_card(path: Path) -> Card:
     """The card at `path`. Raises UserError, with one message, for a file or a field that is wrong."""
     with suppress(OSError, ValueError):  # of names that no file can have, which reading says

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet
-from greybox_torch.data.card import read_card
+from greybox_torch.data.card import card_at
 from greybox_torch.data.card_channels import ExperimentEntry
 from greybox_torch.data.columns import columns_of
 from greybox_torch.data.data_warning import InASentence
@@ -83,10 +83,8 @@ def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps | ClosedGap]
     """The first file whose stamps say another sample time than the card, or have a gap within an experiment; none where the card names its
     time stamps.
     """
-    if data.path is None or not data.path.is_file():
-        return
-    card = read_card(data.path)
-    if card.time is not None or card.sample_time is None:
+    card = card_at(data.path)
+    if card is None or data.path is None or card.time is not None or card.sample_time is None:
         return
     experiments: dict[Path, list[ExperimentEntry]] = {}
     for entry in card.experiment:

@@ -11,6 +11,7 @@ from greybox_torch.data import DataSet, Recording
 
 AS_RECORDED = "recorded"
 """What the limits say of an input that is to be as it was recorded."""
+
 STEPPED = 0.5
 """Share of an input's changes that stand alone, the input constant before and after, from which on it was set in steps."""
 

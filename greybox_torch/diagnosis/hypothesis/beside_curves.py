@@ -27,7 +27,7 @@ def beside_curves(hypothesis: Hypothesis, at: Problem, *, weighed: bool = False)
     Args:
         weighed: whether errors are weighed by their spectrum.
     """
-    weights = np.array([p.shrunk for p in hypothesis.model.declared_parameters], dtype=bool) & hypothesis.problem.free
+    weights = weights_of_curves(hypothesis)
     if not weights.any():
         return None
     problem = replace(at, free=at.free | weights)
@@ -42,6 +42,11 @@ def beside_curves(hypothesis: Hypothesis, at: Problem, *, weighed: bool = False)
     if here is None or not np.isfinite(here.hessian).all():
         return None
     return problem, uncertainty(run, z, 2.0 * here.cost / problem.samples * stiff)
+
+
+def weights_of_curves(hypothesis: Hypothesis) -> np.ndarray:
+    """Which of the parameters (n_p,) are free weights of curves."""
+    return np.array([p.shrunk for p in hypothesis.model.declared_parameters], dtype=bool) & hypothesis.problem.free
 
 
 def _known(problem: Problem, weights: np.ndarray) -> np.ndarray:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
-from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves
+from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves, weights_of_curves
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_for_whole_records
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
@@ -28,18 +28,19 @@ from greybox_torch.simulation.side_by_side import side_by_side
 class Final:
     """A hypothesis fitted to whole estimation records: its problem there, and the uncertainty of the unknowns (None where unfitted).
 
-    ``weighed``: with errors weighed by their spectrum. ``with_curves``: the same with the weights of free curves among the unknowns.
+    ``weighed``: with errors weighed by their spectrum. ``with_curves`` makes the same with the weights of free curves among the unknowns,
+    None where there are none.
     """
 
     problem: Problem
     uncertainty: Uncertainty | None
     weighed: bool = False
-    with_curves: Final | None = None
+    with_curves: Callable[[], Final | None] | None = None
 
-    @property
+    @cached_property
     def told(self) -> Final:
         """The one whose deviations a reader is told, which allow for what is not known of free curves."""
-        return self if self.with_curves is None else self.with_curves
+        return (None if self.with_curves is None else self.with_curves()) or self
 
     def sentences(self) -> tuple[str, ...]:
         """What the reader of a verdict has to know of it."""
@@ -122,10 +123,14 @@ def _weighed(hypothesis: Hypothesis, begun: Sequence[Problem], records: Records 
     return Final(at, known, weighed=True, with_curves=_with_curves(hypothesis, at, weighed=True))
 
 
-def _with_curves(hypothesis: Hypothesis, at: Problem, weighed: bool = False) -> Final | None:
-    """A fit with the weights of free curves among the unknowns; None where there are none."""
-    found = beside_curves(hypothesis, at, weighed=weighed)
-    return None if found is None else Final(*found, weighed=weighed)
+def _with_curves(hypothesis: Hypothesis, at: Problem, weighed: bool = False) -> Callable[[], Final | None] | None:
+    """Makes a fit with the weights of free curves among the unknowns, once it is told; None where there are none."""
+
+    def made() -> Final | None:
+        found = beside_curves(hypothesis, at, weighed=weighed)
+        return None if found is None else Final(*found, weighed=weighed)
+
+    return made if weights_of_curves(hypothesis).any() else None
 
 
 def from_longest_windows(hypothesis: Hypothesis) -> Final:
@@ -144,7 +149,7 @@ def as_windows_have_it(
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
     at, known = run.at(run.start), _over_windows(hypothesis)
-    return Final(at, known, with_curves=Final(replace(at, free=hypothesis.problem.free), known))
+    return Final(at, known, with_curves=lambda: Final(replace(at, free=hypothesis.problem.free), known))
 
 
 def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:
