@@ -69,5 +69,5 @@ def _kinematic(a: Attachment, local: Signals, own: Signals) -> list[tuple[str, A
     if not a.mechanism.kinematic:
         return []
     followed = [(a.position, a.mechanism.reaction(local, own))] if a.position else []
-    found = [*followed, (a.port, a.mechanism.damped(local, own))]
+    found = [*followed, (a.port, a.mechanism.force_beside(local, own))]
     return [(place, force) for place, force in found if force is not None]

@@ -134,8 +134,8 @@ class Mechanism:
         """For a kinematic law that follows a body's position, the force on that body, if there is one."""
         return None
 
-    def damped(self, s: Signals, p: Signals) -> Any | None:
-        """For a kinematic law, the force on the coupling by which its damper answers the rate of the change, if there is one."""
+    def force_beside(self, s: Signals, p: Signals) -> Any | None:
+        """For a kinematic law, the force on the coupling beside the changed deflection (a damper's, a stiffer contact's), if any."""
         return None
 
     def written_as_force(self) -> Mechanism | None:

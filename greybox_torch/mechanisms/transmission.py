@@ -34,21 +34,22 @@ class Backlash(Mechanism):
     agree.
     Where the coupling's rate is known, its damper may lose ``damping`` within the gap, where the two sides do not touch: a part of its
     coefficient, or all of it. ``as_force``: the same as a force, with the ``stiffness`` of the spring as a parameter of its own, for
-    a model in which no state reaches this spring alone.
+    a model in which no state reaches this spring alone. ``stiffening``: what touches beyond the gap grows stiffer, by k_2 p² of force
+    with p what the deflection is beyond it, as teeth and cables do.
     """
 
     name = "backlash"
     kinds = ("coupling",)
     needs = ("deflection",)
-    later = ("damping", "centre")
+    later = ("damping", "centre", "k_2")
     springs = True
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
     source = "M. Nordin, P.-O. Gutman, Automatica 38(10), 2002"
     experiment = "reversals at low torque, so that the gap is crossed slowly"
 
-    def __init__(self, as_force: bool = False) -> None:
-        self.as_force = as_force
+    def __init__(self, as_force: bool = False, stiffening: bool = False) -> None:
+        self.as_force, self.stiffening = as_force, stiffening
         self.kinematic = not as_force
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
@@ -63,6 +64,9 @@ class Backlash(Mechanism):
         if "rate" in around.ranges:
             lost = "what the coupling's damper loses within the gap"
             found.append(Parameter("damping", 0.0, around.per("rate"), lower=0.0, description=lost))
+        if self.stiffening:
+            grows = "by which the stiffness grows beyond the gap"
+            found.append(Parameter("k_2", 0.0, around.per("deflection", 2), lower=0.0, description=grows))
         return found
 
     def widest(self, around: Surroundings) -> float:
@@ -71,8 +75,8 @@ class Backlash(Mechanism):
         return HIDDEN_GAP * reach if "deflection" in around.unmeasured else reach
 
     def force(self, s: Signals, p: Signals, z: Signals) -> Any:
-        lost, damped = -p.stiffness * torch.clamp(s.deflection, *self.gap(p)), self.damped(s, p)
-        return lost if damped is None else lost + damped
+        lost, beside = -p.stiffness * torch.clamp(s.deflection, *self.gap(p)), self.force_beside(s, p)
+        return lost if beside is None else lost + beside
 
     def deflection(self, s: Signals, p: Signals) -> Any:
         low, high = self.gap(p)
@@ -91,16 +95,24 @@ class Backlash(Mechanism):
         """Where the gap begins and ends."""
         return (p.centre - p.half_gap, p.centre + p.half_gap) if "centre" in p else (-p.half_gap, p.half_gap)
 
-    def damped(self, s: Signals, p: Signals) -> Any:
-        if "damping" not in p:
-            return None
-        # A kinematic law sees the deflection less its dead zone: within the gap that is zero, but for rounding.
-        within = p.half_gap if self.as_force else ROUNDING * p.half_gap
-        from_centre = s.deflection - p.centre if self.as_force and "centre" in p else s.deflection
-        return torch.where(torch.abs(from_centre) < within, -p.damping * s.rate, 0.0)
+    def force_beside(self, s: Signals, p: Signals) -> Any:
+        found = [self._damped(s, p)] if "damping" in p else []
+        if self.stiffening:
+            # A kinematic law sees the deflection less its dead zone.
+            pressed = self.deflection(s, p) if self.as_force else s.deflection
+            found.append(p.k_2 * pressed * torch.abs(pressed))
+        return sum(found) if found else None
+
+    def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
+        """With what touches growing stiffer."""
+        return () if self.stiffening else ((Backlash(self.as_force, stiffening=True), {**values, "k_2": 0.0}),)
+
+    def plainer(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
+        """With a stiffness that stays."""
+        return (Backlash(self.as_force), {n: v for n, v in values.items() if n != "k_2"}) if self.stiffening else None
 
     def written_as_force(self) -> Mechanism:
-        return Backlash(as_force=True)
+        return Backlash(as_force=True, stiffening=self.stiffening)
 
     def probes(self, around: Surroundings) -> Sequence[Probe]:
         gaps = [f * around.ranges["deflection"].reach for f in (0.03, 0.1, 0.3, 0.7)]
@@ -108,6 +120,12 @@ class Backlash(Mechanism):
             amplitudes = tuple(p.name for p in self.parameters(around) if p.name not in ("half_gap", "centre"))
             return [Probe(amplitudes, {"half_gap": gap}) for gap in gaps]
         return [Probe(("half_gap",)), *(Probe((SHARE,), {"half_gap": gap}) for gap in gaps)]
+
+    def _damped(self, s: Signals, p: Signals) -> Any:
+        # Within the gap the deflection that a kinematic law sees is zero, but for rounding.
+        within = p.half_gap if self.as_force else ROUNDING * p.half_gap
+        from_centre = s.deflection - p.centre if self.as_force and "centre" in p else s.deflection
+        return torch.where(torch.abs(from_centre) < within, -p.damping * s.rate, 0.0)
 
 
 class HystereticSpring(Mechanism):

@@ -76,7 +76,7 @@ class TransmissionError(Mechanism):
     def reaction(self, s: Signals, p: Signals) -> Any:
         return -p.reaction * self._slope(s, p) * s.load if "reaction" in p and "load" in s else None
 
-    def damped(self, s: Signals, p: Signals) -> Any:
+    def force_beside(self, s: Signals, p: Signals) -> Any:
         return p.damping * self._slope(s, p) * s.speed if "damping" in p and "speed" in s else None
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:

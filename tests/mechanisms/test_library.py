@@ -172,7 +172,11 @@ def test_every_parameter_moves_the_law(mechanism: Mechanism, around, anywhere, l
         if memory:
             moved = rates(mechanism, other, memory, **signals) - rates(mechanism, values, memory, **signals)
             change = max(change, np.abs(moved).max())
-        hook = {"reaction": "reaction", "damping": "damped"}.get(p.name) if mechanism.kinematic else None
+        hook = (
+            {"reaction": "reaction", "damping": "force_beside", "k_2": "force_beside"}.get(p.name)
+            if mechanism.kinematic
+            else None
+        )
         if hook is not None:
             forces = [beside(hook, mechanism, at, anywhere) for at in (other, values)]
             change = np.abs(forces[0] - forces[1]).max()

@@ -38,7 +38,7 @@ METHODS = [
     "force",
     "deflection",
     "reaction",
-    "damped",
+    "force_beside",
     "probes",
     "misplaced",
     "degenerate",

@@ -20,6 +20,8 @@ from greybox_torch.mechanisms.transmission import (
 )
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 
+from .conftest import named
+
 TWIST = np.linspace(-0.06, 0.06, 241)
 RATES = np.linspace(-2.0, 2.0, 81)
 
@@ -212,3 +214,23 @@ def test_a_spring_runs_into_rubber_on_either_side(law) -> None:
     values = {"from_up": 0.02, "a_up": 100.0, "b_up": 5e3, "from_down": 0.04, "a_down": 50.0, "b_down": 0.0}
     force = law(NonlinearStiffness(stops=True), values, deflection=np.array([-0.05, -0.04, 0.0, 0.02, 0.03]))
     np.testing.assert_allclose(force, [-0.5, 0.0, 0.0, 0.0, 1.5], atol=1e-12)
+
+
+@pytest.mark.parametrize("as_force", [False, True])
+def test_what_touches_beyond_a_gap_may_grow_stiffer(law, around, as_force) -> None:
+    """Seen: a tendon's slack, told as a spring that runs into rubber (0.96), as that has a stiffness that grows."""
+    (form, start), values = Backlash(as_force).richer({"half_gap": 0.02})[0], {"half_gap": 0.02, "k_2": 50.0}
+    assert start == {"half_gap": 0.02, "k_2": 0.0} and not form.richer(start)
+    assert "k_2" in {p.name for p in form.parameters(around)} - {p.name for p in Backlash(as_force).parameters(around)}
+    plainer = form.plainer(values)
+    assert plainer is not None and plainer[0].options() == Backlash(as_force).options() and "k_2" not in plainer[1]
+    pressed = np.sign(TWIST) * np.maximum(np.abs(TWIST) - 0.02, 0.0)
+    if as_force:
+        force = law(form, values | {"stiffness": 3.0}, deflection=TWIST, rate=0.0 * TWIST)
+        np.testing.assert_allclose(3.0 * TWIST + force, 3.0 * pressed + 50.0 * pressed * np.abs(pressed), atol=1e-14)
+    else:
+        seen, zero = law(form, values, deflection=TWIST, rate=0.0 * TWIST).copy(), np.zeros_like(TWIST)
+        np.testing.assert_allclose(seen, pressed, atol=1e-14)
+        s, p = named("signal", {"deflection": seen, "rate": zero}), named("parameter", {**values, "damping": 0.0})
+        np.testing.assert_allclose(form.force_beside(s, p), 50.0 * pressed * np.abs(pressed), atol=1e-14)
+    assert form.written_as_force().options() == {"as_force": True, "stiffening": True}

@@ -48,6 +48,13 @@ def laws_behind_curve(
     price = price_of_noise(best.fitted, study.settings)
     if any(r.gain - price * r.size > best.gain - price * best.size for r in in_part):
         return behind  # the curve leads by the noise that its many parameters take up
-    richer = richer_forms(study, best.candidate.attachment.port, [(r.candidate, r.fitted) for r in in_part])
-    forms = side_by_side(partial(tried, law) for law in richer)
-    return [*behind, *(r for r in forms if r is not None and r.fitted.score < within)]
+
+    def in_richer_forms(laws: Sequence[RankedCandidate]) -> list[RankedCandidate]:
+        richer = richer_forms(study, best.candidate.attachment.port, [(r.candidate, r.fitted) for r in laws])
+        forms = side_by_side(partial(tried, law) for law in richer)
+        return [r for r in forms if r is not None and r.fitted.score < within]
+
+    forms = in_richer_forms(in_part)
+    # Beside the richer form of another law, one that comes nearer than that did in its plain form is asked in its own.
+    nearer = [r for r in final if not r.unknown and r.gain >= study.settings.named_share * best.gain]
+    return [*behind, *forms, *(in_richer_forms([r for r in nearer if r.fitted.score >= within]) if forms else ())]

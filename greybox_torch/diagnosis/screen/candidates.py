@@ -24,7 +24,7 @@ from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel, Port
 from greybox_torch.model.idle_inputs import ports_in_use
 from greybox_torch.model.joined_bodies import joined_bodies, to_ground
-from greybox_torch.model.ports import Actuator, driving_body, integrates_position
+from greybox_torch.model.ports import Actuator, Sensor, driving_body, integrates_position
 
 ANGLES = ("rad", "deg", "rev", "turn")
 """Beginnings of the units of angles: only on an angle does gravity repeat."""
@@ -48,6 +48,9 @@ a voice coil that leaves its gap, a damper whose oil is torn along, a rope or a 
 brake that acts over a part of the way.
 """
 
+SAME = 1e-9
+"""Share of its largest magnitude within which an input is constant."""
+
 MOST_KNOTS_FROM_ELSEWHERE = 20
 """How fine curves over signals of other ports may be, and those that multiply a rate: each knot costs the screen as much as a law."""
 
@@ -69,6 +72,8 @@ def candidates(
     found = []
     for port in ports_in_use(model):
         shifted = shifts.get(port.name, "")
+        if flexible and _gives_no_more_than_a_body(model, port, surroundings[port.name]):
+            continue
         for mechanism in _curves(model, port, knots) if flexible else _laws_at(model, port):
             if port.kind in mechanism.kinds and _available(mechanism, surroundings[port.name]):
                 law = mechanism if shifted or not mechanism.kinematic else mechanism.written_as_force()
@@ -78,6 +83,17 @@ def candidates(
     coarse = knots <= MOST_KNOTS_FROM_ELSEWHERE
     further = further_curves(model, knots) if coarse else ()
     return [*found, *(attach(model, port.name, c) for port, c in further if c.available(surroundings[port.name]))]
+
+
+def _gives_no_more_than_a_body(model: GreyBoxModel, port: Port, around: Surroundings) -> bool:
+    """Whether a port is an actuator whose input is the same in all samples, of a model that has another port for a force.
+
+    A gain of it that follows a signal is a force that does. Seen: a ball that falls, with g as its input, told as unknown at that (0.97).
+    """
+    if not isinstance(port, Actuator) or all(isinstance(q, Actuator | Sensor) for q in ports_in_use(model)):
+        return False
+    moves = around.ranges.get("input")
+    return moves is not None and moves.high - moves.low <= SAME * moves.reach
 
 
 def _laws() -> Iterable[Mechanism]:

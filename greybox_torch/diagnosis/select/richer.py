@@ -6,7 +6,7 @@ the next step the form that has it is asked, which as one law is a simpler answe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.as_two_laws import two_in_its_place
 from greybox_torch.diagnosis.select.choice import alone_at_noise, least_gain, priced_score
 from greybox_torch.diagnosis.select.flexed import widened
+from greybox_torch.diagnosis.select.forms import forms, forms_of_both
 from greybox_torch.diagnosis.select.remaining import completes, remaining_share
 from greybox_torch.diagnosis.select.rivals_of_form import with_rivals_of_form
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -40,8 +41,8 @@ def with_richer_form(study: Study, state: SearchState, done: SelectionStep | Non
         return state
     taken = done.taken
     effect = taken.candidate.attachment
-    forms = ((law, start) for law, start in _forms(effect, state) if not law.mechanism.stands_for)
-    tried = (_in_form(study, state, taken, law, start) for law, start in forms)
+    single = ((law, start) for law, start in forms(effect, state) if not law.mechanism.stands_for)
+    tried = (_in_form(study, state, taken, law, start) for law, start in single)
     paying = [r for r in tried if r is not None and _preferred(study, state, effect, r)]
     best = min(paying, key=lambda r: priced_score(r.fitted, study.settings), default=None)
     if best is None:
@@ -84,7 +85,7 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
         done = before.step_of(effect.prefix)
         if done is None or done.taken is None:
             continue
-        for law, start in _forms_of_both(effect, latest, before, after):
+        for law, start in forms_of_both(effect, latest, before, after):
             found = _in_form(study, before, done.taken, law, start)
             far = (
                 found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found)
@@ -112,35 +113,6 @@ def as_one_law(study: Study, state: SearchState) -> SearchState:
     return state
 
 
-def _forms_of_both(
-    effect: Attachment, newest: Attachment, before: SearchState, after: SearchState
-) -> Iterator[tuple[Attachment, dict[str, float]]]:
-    """The richer forms of an effect, and those of the newest one at its port that have in them what it is, such as a mean level.
-
-    A form that stands for both begins with what the two came to.
-    """
-    for law, start in _forms(effect, before):
-        if not law.mechanism.stands_for:
-            yield law, start
-    for own, other in ((effect, newest), (newest, effect)):
-        for law, start in _forms(own, before, after.current.values()):
-            if other.mechanism.name in law.mechanism.stands_for:
-                theirs = _of_the_other(law, start, other, after)
-                both = start | {n: v for n, v in theirs.items() if start[n] == 0.0}
-                yield law, both
-                width = f"{law.prefix}.v_0"
-                if width in theirs:  # within which friction changes its sign: either may be the one law's
-                    yield law, both | {width: theirs[width]}
-
-
-def _of_the_other(
-    law: Attachment, start: Mapping[str, float], other: Attachment, after: SearchState
-) -> dict[str, float]:
-    """What ``law`` begins with and ``other`` has under the same name, as that one has it."""
-    named = {f"{law.prefix}.{n}": v for n, v in other.own(after.current.values()).items()}
-    return {n: v for n, v in named.items() if n in start}
-
-
 def _beside_rivals(plain: RankedCandidate, form: RankedCandidate) -> RankedCandidate:
     """A form as its step has its rivals: with what it gains on the hypothesis that these build on, not on the plain form alone."""
     both = {n: getattr(plain, n) + getattr(form, n) for n in ("gain", "plausible")}
@@ -152,25 +124,6 @@ def _improves(study: Study, found: RankedCandidate) -> bool:
     settings = study.settings
     further = found.gain > least_gain(found.fitted, settings) and found.significance > settings.least_significance
     return further and sound(study, found)
-
-
-def _forms(
-    effect: Attachment, state: SearchState, begun: Mapping[str, float] | None = None
-) -> Iterator[tuple[Attachment, dict[str, float]]]:
-    """The richer forms of an effect that are not there already under their own name, and all parameters to begin with.
-
-    Neither among what was found nor among what the model was given with.
-
-    Args:
-        begun: the values that they begin with; by default those of the state.
-    """
-    given = {p.name.rpartition(".")[0] for p in state.plain.model.declared_parameters}
-    start, values = f"{effect.prefix}.", begun or state.current.values()
-    others = {n: v for n, v in values.items() if not n.startswith(start)}
-    for mechanism, own_start in effect.mechanism.richer(effect.own(values)):
-        law = replace(effect, mechanism=mechanism)
-        if law.prefix not in (state.prefixes | given) - {effect.prefix}:
-            yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in own_start.items()}}
 
 
 def _in_form(

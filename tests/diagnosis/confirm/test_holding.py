@@ -22,7 +22,8 @@ from greybox_torch.mechanisms.stribeck import StribeckFriction
 def shares(monkeypatch: pytest.MonkeyPatch) -> dict[str, float]:
     """What the other parameters leave of an effect, by prefix."""
     left: dict[str, float] = {}
-    monkeypatch.setattr(holding, "_drifting", lambda study, state, judged: None)
+    for asked in ("_drifting", "_within_disturbances"):
+        monkeypatch.setattr(holding, asked, lambda study, state, judged: None)
     monkeypatch.setattr(holding, "not_undone", lambda fitted, effect, surroundings: left.get(effect.prefix, 1.0))
     monkeypatch.setattr(
         holding, "sizes", lambda study, state, gains: {p: g.size for p, g in gains.items()} or {"link.law": 0.1}

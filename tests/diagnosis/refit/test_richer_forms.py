@@ -114,3 +114,21 @@ def test_no_form_is_named_as_what_is_there_already(compared) -> None:
     both = search.refitted((uneven_already, law.candidate.attachment), search.plain)
     assert both is not None
     assert richer_forms(search.study, "rotor", [(law.candidate, both)]) == []
+
+
+def test_beside_a_form_that_comes_as_far_as_the_curve_nearer_laws_are_asked_in_theirs(compared, monkeypatch) -> None:
+    """Seen: a tendon's slack, told as a spring that runs into rubber (0.96): play had come nearer than the spring in its plain form."""
+    search, (curve, law) = compared(uneven)
+    nearer = replace(law, gain=0.99 * curve.gain)
+    asked: list[list[RankedCandidate]] = []
+
+    def forms(study: Any, port: str, laws: Any) -> list[Candidate]:
+        asked.append([candidate for candidate, _ in laws])
+        return richer_forms(study, port, laws)
+
+    monkeypatch.setattr(behind_curve, "richer_forms", forms)
+    laws_behind_curve(search.study, search.plain, [curve, law, nearer], frozenset())
+    assert asked == [[law.candidate], [nearer.candidate]]
+    asked.clear()
+    laws_behind_curve(search.study, search.plain, [curve, nearer], frozenset())
+    assert asked == [[]], "no form of another law is there"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections import defaultdict
+from dataclasses import replace
 from typing import ClassVar
 
 import pytest
@@ -88,7 +89,10 @@ def test_play_is_a_force_where_no_state_reaches_the_spring_alone(arm_search) -> 
     shifts = {**arm_search.shifts, "gear_spring": ""}
     found = candidates(RobotArm(), shifts, arm_search.surroundings, flexible=False)
     plays = {a.port: (a.shifted_state, a.mechanism.options()) for a in found if a.mechanism.name == "backlash"}
-    assert plays == {"gear_spring": ("", {"as_force": True}), "arm_spring": ("+arm_twist", {"as_force": False})}
+    assert plays == {
+        "gear_spring": ("", {"as_force": True, "stiffening": False}),
+        "arm_spring": ("+arm_twist", {"as_force": False, "stiffening": False}),
+    }
     found += periodic_candidates(RobotArm(), shifts, arm_search.surroundings, [7.3])
     errors = {
         (a.port, a.shifted_state, a.mechanism.as_force) for a in found if isinstance(a.mechanism, TransmissionError)
@@ -190,3 +194,14 @@ def test_what_acts_along_a_part_of_the_way_may_grow_with_the_speed_or_with_one_o
     assert {a.mechanism.factor for a in along} == {"", *products}
     assert all(a.position == "drum" for a in along)
     assert len({identity_of(a) for a in along}) == len(along), "each is a hypothesis of its own"
+
+
+@pytest.mark.parametrize(("low", "offered"), [(9.81, False), (9.0, True)])
+def test_no_curve_is_offered_at_an_input_that_never_moves(low, offered) -> None:
+    """Seen: a ball that falls, with g as its input, told as unknown at that (0.97): a gain that follows its height is a force that does."""
+    hoist = Hoist()
+    around = Surroundings({s: Range(0.0, 1.0, 0.5) for s in ("position", "speed", "time")}, {}, "N", 1e-2)
+    ports = {p.name: replace(around, ranges={**around.ranges, "input": Range(low, 9.81, 9.5)}) for p in hoist.all_ports}
+    found = candidates(hoist, {}, ports, flexible=True)
+    assert ("actuator" in by_port(found)) is offered
+    assert "actuator" in by_port(candidates(hoist, {}, ports, flexible=False)), "a bias of it is a law"

@@ -9,7 +9,8 @@ import pytest
 
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
-from greybox_torch.diagnosis.select.richer import _forms_of_both, as_one_law, richer_instead, with_richer_form
+from greybox_torch.diagnosis.select.forms import forms_of_both
+from greybox_torch.diagnosis.select.richer import as_one_law, richer_instead, with_richer_form
 from greybox_torch.diagnosis.select.state import SelectionStep
 from greybox_torch.diagnosis.stopping import result_of
 from greybox_torch.mechanisms.attachment import attach
@@ -51,7 +52,7 @@ def test_a_level_that_stays_and_one_that_fades_are_asked_as_one_law(motor_data, 
     level, fading = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", FrictionWarmup())
     before = found(search, fading, {f"{fading.prefix}.delta": 0.05})
     after = before.at(search.refitted((fading, level), before.current))
-    forms = {law.mechanism.stands_for: start for law, start in _forms_of_both(fading, level, before, after)}
+    forms = {law.mechanism.stands_for: start for law, start in forms_of_both(fading, level, before, after)}
     start = forms[("coulomb_friction", "friction_warmup")]
     values = after.current.values()
     assert start["rotor.friction_warmup.F_c"] == values[f"{level.prefix}.F_c"] == pytest.approx(0.1, rel=0.2)

@@ -12,8 +12,8 @@ from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select import richer
+from greybox_torch.diagnosis.select.forms import forms
 from greybox_torch.diagnosis.select.richer import (
-    _forms,
     _pays,
     _preferred,
     richer_instead,
@@ -26,6 +26,7 @@ from greybox_torch.mechanisms.actuator import InputDelay, InputGain, InputLag
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.sensor import OutputDelay, SensorBias, SensorLag
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.varying_friction import PositionDependentFriction
@@ -158,9 +159,9 @@ def test_a_filter_of_second_order_is_found_behind_a_delay_or_a_lag(data_set, mot
     assert values[f"{law.prefix}.damping"] == pytest.approx(damping, rel=0.05)
     both = replace(state, current=replace(state.current, effects=(effect, attach(motor, "sensor", SensorLag()))))
     if isinstance(taken, OutputDelay):
-        assert not list(_forms(effect, both)), "there is a lag at the sensor already"
+        assert not list(forms(effect, both)), "there is a lag at the sensor already"
     dry = attach(motor, "sensor", SensorBias())
-    assert not list(_forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0})))
+    assert not list(forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0})))
 
 
 @pytest.mark.parametrize(
@@ -218,3 +219,18 @@ def test_friction_along_a_turn_that_reverses_is_asked_with_harmonics(motor_data,
     assert values["order"] == pytest.approx(2.5, rel=0.01)
     for k, size in {"": 0.06, "_2": 0.04, "_3": 0.03}.items():
         assert np.hypot(values[f"a{k}"], values[f"b{k}"]) == pytest.approx(size, rel=0.15)
+
+
+def test_a_law_that_contains_what_was_found_is_asked_where_it_was_no_rival(motor_data, motor, begun) -> None:
+    """Seen: the bristles of a capstan, told as Coulomb friction (0.85), which left 140 times the noise: no probe had their length."""
+    search = begun(motor_data(torque=lambda q, v: -0.06 * np.tanh(v / 0.2)), motor)
+    dry, bristles = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", PreslidingHysteresis())
+    state = found(search, dry, {f"{dry.prefix}.F_c": 0.06})
+    asked = {law.mechanism.name: start for law, start in forms(dry, state)}
+    assert {"coulomb_asymmetry", "presliding_hysteresis"} <= set(asked)
+    level = state.current.values()[f"{dry.prefix}.F_c"]
+    assert asked["presliding_hysteresis"][f"{bristles.prefix}.F"] == level
+    (step,) = state.steps
+    rival = replace(step.taken, candidate=Candidate(bristles, (), 0.1))
+    beside = replace(state, steps=(replace(step, ranked=(*step.ranked, rival)),))
+    assert "presliding_hysteresis" not in {law.mechanism.name for law, _ in forms(dry, beside)}
