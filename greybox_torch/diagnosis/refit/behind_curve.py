@@ -56,5 +56,7 @@ def laws_behind_curve(
 
     forms = in_richer_forms(in_part)
     # Beside the richer form of another law, one that comes nearer than that did in its plain form is asked in its own.
-    nearer = [r for r in final if not r.unknown and r.gain >= study.settings.named_share * best.gain]
-    return [*behind, *forms, *(in_richer_forms([r for r in nearer if r.fitted.score >= within]) if forms else ())]
+    names = {r.candidate.attachment.mechanism.name for r in forms}
+    others = [r for r in final if not r.unknown and r.candidate.attachment.mechanism.name not in names]
+    nearer = [r for r in others if r.gain >= study.settings.named_share * best.gain and r.fitted.score >= within]
+    return [*behind, *forms, *(in_richer_forms(nearer) if forms else ())]
