@@ -45,7 +45,7 @@ CARRY_EVERY = 4
 class WindowFit:
     """Result: the problem with its parameters improved, window starts (W, n_x), mean squared weighted error, energy of the error per
     window (W,), evaluations used; ``along``, the starts with carried states brought along (W, n_x), where that is known; ``damping``,
-    with which the descent would go on.
+    with which the descent would go on; ``ended``, the pass at its starts, without holds, and what it was simulated with.
     """
 
     problem: Problem
@@ -56,6 +56,12 @@ class WindowFit:
     evaluations: int
     along: np.ndarray | None = None
     damping: float = FIRST_DAMPING
+    ended: tuple[Simulator, WindowModel] | None = None
+
+    def known(self, simulator: Simulator, starts: np.ndarray) -> WindowModel | None:
+        """The pass at ``starts`` where they are its own, which need not be simulated again; None elsewhere."""
+        there = self.ended is not None and self.ended[0] is simulator and starts is self.starts
+        return self.ended[1] if self.ended is not None and there else None
 
 
 def fit_windows(
@@ -70,6 +76,7 @@ def fit_windows(
     rival: Rival | None = None,
     damping: float = FIRST_DAMPING,
     carried: bool = False,
+    known: WindowModel | None = None,
 ) -> WindowFit | None:
     """Estimate the free parameters on windows of ``length`` samples with free start states; None where even these overflow.
 
@@ -81,6 +88,7 @@ def fit_windows(
         rival: a fit of the same windows from another start, beside which this one is given up early where it is far behind.
         damping: to begin with; that of a fit which is carried on.
         carried: whether ``starts`` are what :func:`carried_starts` brings along with the values of ``problem``.
+        known: the pass at these ``starts`` and values, where it was simulated before.
     """
     windows = cut(problem.records, length)
     states = starts
@@ -88,14 +96,14 @@ def fit_windows(
         states = _starts_of(shorter, problem, simulator, windows)
     elif states is None:
         states = carried_starts(problem, simulator, windows, rough_starts(problem, windows))
-    here = evaluate(problem, simulator, windows, states, None)
-    if here is None:
+    found = known or evaluate(problem, simulator, windows, states)
+    if found is None:
         return None
-    hold = _weak_hold(problem, states, here.mean_square, windows.steps, size)
+    hold = _weak_hold(problem, states, found.mean_square, windows.steps, size)
     expected = np.abs(problem.expected[problem.free])
     sizes = expected if size is None else np.where(expected > 0, expected, 1.0)  # weights of a network: of order one
-    here = held(here, hold)
-    evaluations, accepted_steps, growth, change = 1, 0, 2.0, 1.0
+    here = held(found, hold)
+    evaluations, accepted_steps, growth, change = int(known is None), 0, 2.0, 1.0
     along = states if carried else None  # carried with the values and starts as they now are
     for iteration in range(settings.iterations):
         if rival is not None and rival.lost(here.mean_square, change, iteration, settings.iterations - iteration):
@@ -105,17 +113,18 @@ def fit_windows(
             trial, trial_states, predicted = stepped(problem, here, states, damping, sizes)
             if predicted <= NEGLIGIBLE * settings.tolerance * here.cost:
                 break
-            there, most = None, here.cost - LEAST_GAIN_RATIO * predicted
+            there, passed, most = None, None, here.cost - LEAST_GAIN_RATIO * predicted
             # After one rejected step the next is as likely to be another: its cost alone takes a third of a pass with tangents.
             rejected_before = growth > 2.0
             if problem.admissible(trial.values):
                 evaluations += 1
                 if not (rejected_before and _exceeds(most, trial, simulator, windows, trial_states, hold)):
-                    there = evaluate(trial, simulator, windows, trial_states, hold)
+                    passed = evaluate(trial, simulator, windows, trial_states)
+                    there = None if passed is None else held(passed, hold)
             gain = -1.0 if there is None else (here.cost - there.cost) / predicted
-            if there is not None and gain > LEAST_GAIN_RATIO:
+            if passed is not None and there is not None and gain > LEAST_GAIN_RATIO:
                 change = (here.cost - there.cost) / here.cost
-                problem, states, here, accepted, along = trial, trial_states, there, True, None
+                problem, states, found, here, accepted, along = trial, trial_states, passed, there, True, None
                 damping, growth = max(damping * max(1 / 3, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3), 1e-9), 2.0
                 accepted_steps += 1
                 break
@@ -123,15 +132,16 @@ def fit_windows(
         still = not accepted or change < settings.tolerance
         if along is None and problem.carried.any() and (still or accepted_steps % CARRY_EVERY == 0):
             along = carried_starts(problem, simulator, windows, states)
-            again = evaluate(problem, simulator, windows, along, hold)
+            passed = evaluate(problem, simulator, windows, along)
             evaluations += 1
-            if again is not None and again.cost < here.cost:
+            if passed is not None and (again := held(passed, hold)).cost < here.cost:
                 still = still and again.cost > (1 - settings.tolerance) * here.cost
-                states, here, damping = along, again, min(damping, FIRST_DAMPING)
+                states, found, here, damping = along, passed, again, min(damping, FIRST_DAMPING)
         if still:
             break
     problem = begun_with(problem, windows, states)
-    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along, damping)
+    ended = (simulator, found)
+    return WindowFit(problem, windows, states, here.mean_square, here.energies, evaluations, along, damping, ended)
 
 
 def _starts_of(shorter: WindowFit, problem: Problem, simulator: Simulator, windows: Windows) -> np.ndarray:
@@ -191,7 +201,6 @@ def evaluate(
     simulator: Simulator,
     windows: Windows,
     states: np.ndarray,
-    hold: Hold | None = None,
 ) -> WindowModel | None:
     """One pass over windows from start ``states`` (W, n_x); None where it overflows."""
     n_p, records, begun = int(problem.free.sum()), problem.window_records, open_starts(problem, windows)
@@ -203,7 +212,7 @@ def evaluate(
         return None
     h, g = run.normal[:, :-1, :-1], -run.normal[:, :-1, -1]
     energies = run.normal[:, -1, -1]
-    found = WindowModel(
+    return WindowModel(
         cost=0.5 * float(energies.sum()),
         hpp=h[:, :n_p, :n_p].sum(0),
         gp=g[:, :n_p].sum(0),
@@ -217,7 +226,6 @@ def evaluate(
         bound=begun.bound,
         moved=problem.values[problem.free],
     )
-    return found if hold is None else held(found, hold)
 
 
 def _exceeds(

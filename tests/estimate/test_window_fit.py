@@ -11,6 +11,7 @@ from greybox_torch.estimate.levenberg_marquardt import Settings
 from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.window_fit import WindowFit, _exceeds, _weak_hold, evaluate, fit_windows
+from greybox_torch.estimate.window_step import held
 from greybox_torch.model import GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import cut
@@ -164,8 +165,24 @@ def test_a_pass_without_tangents_tells_the_same_cost(data_set: Any) -> None:
     for _ in range(5):
         there = problem.with_values(draw.uniform(0.5, 3.0, 3))
         states = begun + draw.normal(size=begun.shape)
-        found = evaluate(there, simulator, windows, states, hold)
-        assert found is not None
+        passed = evaluate(there, simulator, windows, states)
+        assert passed is not None
+        found = held(passed, hold)
         assert not _exceeds(found.cost * (1 + 1e-9), there, simulator, windows, states, hold)
         assert _exceeds(found.cost * (1 - 1e-9), there, simulator, windows, states, hold)
     assert _exceeds(np.inf, problem, simulator, windows, np.full_like(begun, np.inf), hold), "it overflows"
+
+
+def test_a_fit_is_carried_on_from_the_pass_that_it_ended_with(data_set: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The pass at its own starts, by the simulator that it was made with, is not simulated again, and the result is the same."""
+    problem = recorded(data_set, 0.5)
+    simulator, other = (Simulator.of(problem.model, problem.free_names) for _ in range(2))
+    first = fit_windows(problem, simulator, 100, settings=Settings(iterations=2))
+    assert first is not None
+    known = first.known(simulator, first.starts)
+    assert known is not None and known.mean_square == first.mean_square
+    assert first.known(other, first.starts) is None and first.known(simulator, first.starts.copy()) is None
+    on = {"starts": first.starts, "damping": first.damping, "carried": True}
+    again, anew = (fit_windows(first.problem, simulator, 100, **on, known=k) for k in (known, None))
+    assert again is not None and anew is not None and again.evaluations == anew.evaluations - 1
+    assert (again.problem.values == anew.problem.values).all() and (again.starts == anew.starts).all()

@@ -15,7 +15,14 @@ def continued(fit: WindowFit, simulator: Simulator, length: int, limits: Setting
         along = fit.along
         starts = carried_starts(fit.problem, simulator, fit.windows, fit.starts) if along is None else along
         again = fit_windows(
-            fit.problem, simulator, length, starts=starts, settings=limits, damping=fit.damping, carried=True
+            fit.problem,
+            simulator,
+            length,
+            starts=starts,
+            settings=limits,
+            damping=fit.damping,
+            carried=True,
+            known=fit.known(simulator, starts),
         )
         if again is None or again.mean_square > fit.mean_square:
             break
