@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.effect import Effect, FreeCurve
+from greybox_torch.diagnosis.curve import FreeCurve
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.report.chart.marks import RUG
 from greybox_torch.report.chart.panel import Chart
