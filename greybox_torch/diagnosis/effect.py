@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -102,6 +102,15 @@ class Effect:
     like: str = ""
     """Which other effects are the same force in the one direction of motion that the recordings show, a clause; "" for none."""
 
+    amplitudes: Mapping[str, tuple[float, float | None]] = field(default_factory=dict)
+    """Of a law of waves their size, whatever the phase, and its deviation, by the parameter behind which it is told."""
+
+    of_line: str = ""
+    """How well a straight line, which is its ``equation``, does in the place of its curve, a clause; "" where none was put there."""
+
+    shared: str = ""
+    """Which parameters of the model do what its curve can do as well, a clause; "" for none."""
+
     of_sign: str = ""
     """That a term of the model's equations may have the wrong sign, a clause that asks; "" elsewhere."""
 
@@ -153,7 +162,9 @@ class Effect:
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the evidence has to know of its parameters and its probability; in clauses, but for what a bound means."""
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        return tuple(filter(None, (self.of_units, self.like, self.of_sign, bounded, *self.limited)))
+        return tuple(
+            filter(None, (self.of_units, self.of_line, self.shared, self.like, self.of_sign, bounded, *self.limited))
+        )
 
     @property
     def headline(self) -> str:

@@ -11,21 +11,23 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.amplitudes import wave_amplitudes
 from greybox_torch.diagnosis.describe.conversion_as_gain import conversion_as_gain
 from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
+from greybox_torch.diagnosis.describe.line_tried import line_tried
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
 from greybox_torch.diagnosis.describe.one_direction import with_likes
 from greybox_torch.diagnosis.describe.profiles import (
     explained_energy,
     local_signals,
     profile,
-    unit_at,
     with_samples,
 )
+from greybox_torch.diagnosis.describe.shared_with_parameters import shared_with_parameters
 from greybox_torch.diagnosis.describe.sign_of_term import sign_of_term
-from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name, unit_told
 from greybox_torch.diagnosis.describe.straight_line import straight_line
 from greybox_torch.diagnosis.describe.where import where
 from greybox_torch.diagnosis.describe.why_limited import why_limited
@@ -120,9 +122,10 @@ def _effect(
         members = members.finding_with(first["value"])
     named = partial(signal_name, model.base, site)
     own = "" if curve is None else named(curve.signal)
-    curve = as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1])
+    curve = as_named(with_samples(curve, local, mechanism.repeats), model.base, site, mechanism.signals()[:1])
     memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
     line = straight_line(curve if isinstance(mechanism, Unknown) and not mechanism.kinematic else None, site, own)
+    tried = None if line else line_tried(study, state.current, final, attachment, site)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,
@@ -142,11 +145,16 @@ def _effect(
         timelines=timelines,
         one_of=members,
         law=mechanism.name,
-        equation=line or equation(attachment, site, around, named, list(parameters)),
+        equation=line
+        or ("" if tried is None else tried.equation)
+        or equation(attachment, site, around, named, list(parameters)),
         at_bounds=tuple(n.removeprefix(prefix) for n in at_bounds(final.problem) if n.startswith(prefix)),
         form=mechanism.nature if mechanism.free else "",
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),
+        amplitudes=wave_amplitudes(attachment, final),
+        of_line="" if tried is None else tried.told,
+        shared=shared_with_parameters(state.current, attachment, final.problem, curve),
         of_sign=sign_of_term(state.current, final, attachment),
         limited=why_limited(uncapped, limit, gain, study.settings),
         size=account.size,
@@ -205,7 +213,7 @@ def _profiles(
     around = study.surroundings[attachment.port]
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(
-        profile(signal_name(model.base, site, name), unit_at(around, name), local[name], energy)
+        profile(signal_name(model.base, site, name), unit_told(model.base, site, around, name), local[name], energy)
         for name in wanted
         if name in local and np.ptp(local[name]) > 0
     )
