@@ -35,6 +35,7 @@ def told_names(model: GreyBoxModel, port: Port, signals: Iterable[str]) -> tuple
 def names_in_model(model: GreyBoxModel, port: Port, signals: Sequence[str]) -> tuple[str, ...]:
     """As :func:`told_names`, the signals of the port by the states that they are as well: the level of a balance is "air"."""
     own = {name: signal for name, signal in port.signals.items() if isinstance(signal, str)}
+    own |= {kind: str(getattr(port, kind)) for kind in ("input", "output") if hasattr(port, kind)}
     found = zip(signals, told_names(model, port, signals), strict=True)
     return tuple(own.get(signal, told if told != signal else spoken(signal)) for signal, told in found)
 

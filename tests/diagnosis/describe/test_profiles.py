@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,7 +28,8 @@ def drawn(motor, law: Unknown, highest: int, around: Surroundings = AROUND) -> C
     effect = attach(motor, "rotor", law)
     model = AugmentedModel(motor, [effect], {"rotor": around})
     values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.w_{highest}": 1.0}
-    curve = law_curve(model, effect, around, SimpleNamespace(parameter_tensors=parameter_signals(values)))
+    problem: Any = SimpleNamespace(parameter_tensors=parameter_signals(values))
+    curve = law_curve(model, effect, around, problem)
     assert curve is not None
     return curve
 
@@ -67,7 +69,7 @@ def test_a_law_that_repeats_is_drawn_over_a_turn(motor, order: float, turns: flo
     effect = attach(motor, "rotor", TorqueRipple(order))
     model = AugmentedModel(motor, [effect], {"rotor": around})
     values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.a": 0.3}
-    problem = SimpleNamespace(parameter_tensors=parameter_signals(values), values_by_name=values)
+    problem: Any = SimpleNamespace(parameter_tensors=parameter_signals(values), values_by_name=values)
     curve = law_curve(model, effect, around, problem)
     assert curve is not None and curve.signal == "position"
     assert (curve.values[0], curve.values[-1]) == (0.0, pytest.approx(2 * np.pi * turns))
