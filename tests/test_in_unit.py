@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from greybox_torch.diagnosis.describe.effects import where
+from greybox_torch.diagnosis.describe.where import where
 from greybox_torch.diagnosis.effect import Profile
 from greybox_torch.in_unit import in_unit
 from greybox_torch.report import text

@@ -40,7 +40,13 @@ def print_training(
     network = found.hybrid.network
     console.print(Text(f"{data.name}: {model.title}", style="bold"))
     console.print(Text(f"\n{training_sentence(found)}", style="bold"), soft_wrap=True)
-    options = ", ".join(f"{k} {_told(v)}" for k, v in network.mechanism.options().items())
+    shown = {k: v for k, v in network.mechanism.options().items() if k != "inputs"}
+    options = "; ".join(
+        [
+            f"inputs {', '.join(found.hybrid.told(network.mechanism.needs))}",
+            *(f"{k} {_told(v)}" for k, v in shown.items()),
+        ]
+    )
     console.print(Text(f"{network.mechanism.name} at {network.port}: {options}"), soft_wrap=True)
     columns, rows = parameter_table(found)
     print_table(console, columns, rows, prose=["description"])

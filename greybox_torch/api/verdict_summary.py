@@ -37,7 +37,7 @@ MOVED = (
 
 REFIT = (
     "refit: the model without effects, estimated on whole records with each output weighed by the error that is left of it; `greybox fit` "
-    "weighs them by their spread, so that its fits may differ."
+    "weighs them by their spread, so that its fits and its parameters may differ."
 )
 
 
@@ -138,6 +138,8 @@ def _rows(effect: Effect) -> Iterator[list[str | float]]:
     for name, entry in effect.shown_parameters.items():
         yield [*first, name, float(entry["value"]), _deviation(entry.get("std")), entry.get("unit", "")]
         first = [""] * len(first)
+        if size := effect.amplitudes.get(name):
+            yield [*first, "(amplitude)", size[0], _deviation(size[1]), entry.get("unit", "")]
         if pitch := effect.pitch(name):
             yield [*first, "(pitch)", pitch[0], _deviation(pitch[1]), pitch[2]]
 
@@ -152,7 +154,8 @@ def _notes(effect: Effect) -> list[str]:
     head = spoken_at(effect.mechanism, effect.port)
     lines = [f"{head}: {in_lines(effect.equation)}"] if effect.equation else []
     lines += [f"{head}: {effect.where}"] if effect.where else []
-    lines += [f"{head}: {told}" for told in (effect.of_units, effect.like, effect.of_sign) if told]
+    clauses = (effect.of_line, effect.shared, effect.of_units, effect.like, effect.of_sign)
+    lines += [f"{head}: {told}" for told in clauses if told]
     lines += [f"{head}: {effect.bounded}"] if effect.bounded else []
     lines += [f"{head}: {effect.undetermined}"] if effect.undetermined else []
     together = () if effect.one_of is None else effect.one_of.members

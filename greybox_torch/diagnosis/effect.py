@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from greybox_torch.diagnosis.curve import Curve
 from greybox_torch.diagnosis.determined import listed_with_values, told_undetermined
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.memory import Memory
 from greybox_torch.diagnosis.one_of import Alternative, OneOf, spoken_at
 from greybox_torch.estimate.notes import told_law_at_bound
@@ -48,49 +48,6 @@ class Timeline:
     def intensity(self) -> float:
         """Share per second."""
         return float(self.share.sum() / (self.edges[-1] - self.edges[0]))
-
-
-@dataclass(frozen=True)
-class FreeCurve:
-    """What the data say in the place of a law: ``force`` (n,) over the values of its :class:`Curve`, with one standard deviation ``spread``
-    (n,), NaN where the records hardly come; and the force ``asked`` (m,) by single stretches of so many ``samples``, at their mean signal
-    ``at`` (m,).
-    """
-
-    force: np.ndarray
-    spread: np.ndarray
-    at: np.ndarray
-    asked: np.ndarray
-    samples: int
-
-
-@dataclass(frozen=True)
-class Curve:
-    """The effect's own law: ``force`` (n,) over ``signal`` (n,); ``force_unit`` as at the port. ``spread`` (n,) one standard deviation.
-
-    ``seen`` (b,): how many samples of the estimation records lie in each of b equal bins from the lowest to the highest of ``values``.
-    """
-
-    signal: str
-    unit: str
-    values: np.ndarray
-    force: np.ndarray
-    force_unit: str
-    spread: np.ndarray | None = None
-    free: FreeCurve | None = None
-    seen: np.ndarray | None = None
-    factor: Factor | None = None
-
-    def as_json(self) -> dict[str, Any]:
-        """Its entry `curve` of an effect that has no name."""
-        return {
-            "signal": self.signal,
-            "unit": self.unit,
-            "values": [float(v) for v in self.values],
-            "force": [float(v) for v in self.force],
-            "force_unit": self.force_unit,
-            **({} if self.factor is None else self.factor.as_json()),
-        }
 
 
 @dataclass(frozen=True)
@@ -145,6 +102,15 @@ class Effect:
     like: str = ""
     """Which other effects are the same force in the one direction of motion that the recordings show, a clause; "" for none."""
 
+    amplitudes: Mapping[str, tuple[float, float | None]] = field(default_factory=dict)
+    """Of a law of waves their size, whatever the phase, and its deviation, by the parameter behind which it is told."""
+
+    of_line: str = ""
+    """How well a straight line, which is its ``equation``, does in the place of its curve, a clause; "" where none was put there."""
+
+    shared: str = ""
+    """Which parameters of the model do what its curve can do as well, a clause; "" for none."""
+
     of_sign: str = ""
     """That a term of the model's equations may have the wrong sign, a clause that asks; "" elsewhere."""
 
@@ -196,7 +162,9 @@ class Effect:
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the evidence has to know of its parameters and its probability; in clauses, but for what a bound means."""
         bounded = f"at a bound: {self._at_bounds}" if self._at_bounds else ""
-        return tuple(filter(None, (self.of_units, self.like, self.of_sign, bounded, *self.limited)))
+        return tuple(
+            filter(None, (self.of_units, self.of_line, self.shared, self.like, self.of_sign, bounded, *self.limited))
+        )
 
     @property
     def headline(self) -> str:

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 from greybox_torch.estimate.brief_lists import brief_pairs
 from greybox_torch.in_unit import in_unit
 
-FAR_TIMES = 10.0
-"""Times its start value from which an estimate is far from it."""
+FAR_TIMES = 3.0
+"""Times the value beside the effects from which one without them is far from it: what is missing biases it, and its deviation does not say
+so.
+"""
 
 
 @dataclass(frozen=True)
@@ -54,24 +56,27 @@ def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
 
 
 def far_refits(estimates: Sequence[Estimate]) -> tuple[str, ...]:
-    """A sentence on those that were re-estimated far from where they began, and with the effects were not; none elsewhere.
+    """A sentence on those that were re-estimated far from what they are beside the effects; none elsewhere.
 
     Not of one that is at a bound, which is told by itself, or that the recordings do not determine.
     """
     far = [
-        f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} (begun with {one.start:.4g})"
+        f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} ({one.augmented[0]:.4g} with them)"
         for one in estimates
         if one.augmented is not None
         and not one.at_bound[0]
         and one.refit[1] is not None
         and one.refit[1] < abs(one.refit[0])
-        and _times(one.augmented[0], one.start) < FAR_TIMES < _times(one.refit[0], one.start)
+        and one.refit[1] < abs(one.augmented[0] - one.refit[0])
+        and _times(one.augmented[0], one.refit[0]) > FAR_TIMES
     ]
     if not far:
         return ()
+    it = "It" if len(far) == 1 else "They"
     return (
-        f"Re-estimated without the effects: {', '.join(far)}. It may make up for what is missing. The error of such a model may also have "
-        "several minima: `greybox fit` may end in another one, and standard deviations hold around this one alone.",
+        f"Re-estimated without the effects: {', '.join(far)}. {it} may make up for what is missing. The error of such a model may "
+        "also have several minima: `greybox fit`, which weighs the outputs otherwise, may end in another one with values as far off, and "
+        "standard deviations say how well this minimum is known, not how far it is from the machine.",
     )
 
 

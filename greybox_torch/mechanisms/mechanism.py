@@ -52,6 +52,8 @@ class Mechanism:
     :func:`~greybox_torch.model.signals_elsewhere.signals_elsewhere` lists, ``position@BODY`` and ``level@BALANCE``."""
     drawn_over: ClassVar[str] = ""
     """The signal of ``needs`` that its figure is over, where that is not the first."""
+    repeats: ClassVar[bool] = False
+    """Whether it is a sum of waves over a position, of an ``order``, and its figure is over a turn."""
     by_rate: bool = False
     """Whether it reads ``rate@PORT``, which the forces of all other laws belong to."""
     kinematic: bool = False

@@ -32,6 +32,7 @@ class TorqueRipple(Mechanism):
     name = "torque_ripple"
     kinds = ("body",)
     needs = ("position",)
+    repeats = True
     nature = "a force that depends on position"
     explanation = "The drive's force varies periodically with position (cogging, commutation)."
     source = "T. M. Jahns, W. L. Soong, IEEE Trans. Industrial Electronics 43(2), 1996"

@@ -18,6 +18,8 @@ from greybox_torch.mechanisms.waves import (
 )
 from greybox_torch.model import Parameter, Signals
 
+REACTION = "share of the error's slope times the load that the driving body feels (1: all, 0: none)"
+
 
 class TransmissionError(Mechanism):
     """The spring sees the deflection plus e(θ) = a cos nθ + b sin nθ, with θ the position of the driving body, and ``harmonics`` of it.
@@ -35,6 +37,8 @@ class TransmissionError(Mechanism):
     name = "transmission_error"
     kinds = ("coupling",)
     needs = ("deflection", "position")
+    drawn_over = "position"
+    repeats = True
     natural = ("reaction",)
     nature = "a coupling that is no linear spring"
     explanation = "The gear's output does not follow its input exactly: a kinematic error periodic in position."
@@ -61,7 +65,7 @@ class TransmissionError(Mechanism):
                 else []
             ),
             *(
-                [Parameter("reaction", 0.5, "", lower=0.0, upper=1.0, description="share of e'T")]
+                [Parameter("reaction", 0.5, "", lower=0.0, upper=1.0, description=REACTION)]
                 if self._reacts(around)
                 else []
             ),

@@ -65,6 +65,15 @@ def wave_parameters(around: Surroundings, order: float, harmonics: int, unit: st
     ]
 
 
+def drawn_within(order: float, unit_of_position: str) -> float:
+    """The travel over which a sum of waves is drawn: the whole number of periods that is nearest to a turn, or one where positions are no
+    angles.
+    """
+    period = 2 * math.pi / abs(order)
+    is_turned = order_told(unit_of_position)[0] == ""
+    return period * max(1, round(abs(order))) if is_turned else period
+
+
 def waves(position: Any, p: Signals, harmonics: int) -> Any:
     """a cos nθ + b sin nθ + Σ a_k cos knθ + b_k sin knθ."""
     total = 0.0

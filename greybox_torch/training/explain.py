@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -127,6 +127,8 @@ def explain(
     members = [first, *(_beside(first, found, other) for other in others)]
     network = found.hybrid.network
     curves = curves_of(members, found.hybrid.surroundings[network.port].units)
+    names = found.hybrid.told([curve.signal for curve in curves])
+    curves = tuple(replace(curve, name=name) for curve, name in zip(curves, names, strict=True))
     own = own_parameters(found, first.signals)
     matches = tuple(_matches(found, first, own))
     terms, failed = _terms(found, matches, first, own, told) if refit else ((), ())

@@ -19,7 +19,7 @@ from greybox_torch.mechanisms.network import Network
 from greybox_torch.mechanisms.residual_net import ResidualNet
 from greybox_torch.model import GreyBoxModel, Port
 from greybox_torch.model.ports import driving_body
-from greybox_torch.training.signal_names import local_names, readable, told_names
+from greybox_torch.training.signal_names import local_names, names_in_model, readable, told_names
 
 NETWORKS: dict[str, type[Network]] = {"friction": FrictionNet, "residual": ResidualNet, "memory": MemoryNet}
 """By the name that users choose them by."""
@@ -59,6 +59,10 @@ class Hybrid:
     def adds(self) -> str:
         """What the network adds to the physics, in words."""
         return WHAT_IT_ADDS[port_named(self.problem.model, self.network.port).kind]
+
+    def told(self, signals: Sequence[str]) -> tuple[str, ...]:
+        """The names that the model has for signals of the network's port."""
+        return names_in_model(self.problem.model, port_named(self.problem.model, self.network.port), signals)
 
     @property
     def is_network(self) -> np.ndarray:

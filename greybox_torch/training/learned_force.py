@@ -52,11 +52,13 @@ class SignalCurve:
     force: np.ndarray
     deviation: np.ndarray
     share: float
+    name: str = ""
+    """The signal as the model calls it, where it has a name there."""
 
     @property
     def told(self) -> str:
         """The signal as it is told."""
-        return spoken(self.signal)
+        return self.name or spoken(self.signal)
 
     @property
     def zero_within(self) -> float:

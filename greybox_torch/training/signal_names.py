@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.network import spoken
 from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.model.along_motion import DIRECTION
@@ -29,6 +30,14 @@ def told_names(model: GreyBoxModel, port: Port, signals: Iterable[str]) -> tuple
     theirs = _of_the_model(model, port)
     told = {name: one for name, one in theirs.items() if local_names(model, port, (one,)) == (name,)}
     return tuple(told.get(signal, signal) for signal in signals)
+
+
+def names_in_model(model: GreyBoxModel, port: Port, signals: Sequence[str]) -> tuple[str, ...]:
+    """As :func:`told_names`, the signals of the port by the states that they are as well: the level of a balance is "air"."""
+    own = {name: signal for name, signal in port.signals.items() if isinstance(signal, str)}
+    own |= {kind: str(getattr(port, kind)) for kind in ("input", "output") if hasattr(port, kind)}
+    found = zip(signals, told_names(model, port, signals), strict=True)
+    return tuple(own.get(signal, told if told != signal else spoken(signal)) for signal, told in found)
 
 
 def _of_the_model(model: GreyBoxModel, port: Port) -> dict[str, str]:

@@ -79,6 +79,16 @@ def test_a_parameter_of_a_law_at_its_bound_is_told_as_fit_tells_it() -> None:
     assert zero.undetermined == "" and replace(zero, at_bounds=()).undetermined, "seen: two remarks that say the same"
 
 
+def test_waves_are_told_by_their_amplitude() -> None:
+    """Seen: a and b of a transmission error, and nowhere the 0.42 mrad that a data sheet has."""
+    entry = {"std": 1e-4, "unit": "rad"}
+    waves = {"a": {"value": 3e-4, **entry}, "b": {"value": 4e-4, **entry}}
+    effect = replace(BACKLASH, parameters=waves, amplitudes={"b": (5e-4, 2e-5)})
+    assert effect_table(verdict(effect))[1][2][4:] == ["(amplitude)", 5e-4, 2e-5, "rad"]
+    shown = Effects.of(verdict(effect))
+    assert shown is not None and [str(row.symbol) for row in shown.cards[0].parameters][2] == "amplitude"
+
+
 def test_an_experiment_that_no_longer_judges_is_told_first() -> None:
     """Seen: a validation experiment among those estimated from in the table, and not a word of it but in the evidence."""
     told = "Run 3 no longer counts as validation: it was taken to choose with as well (the evidence says why)."

@@ -105,10 +105,10 @@ def test_summary(motor_folder: Make) -> None:
     result = train(folder, *QUICK)
     assert result.exit_code == 0, result.stderr
     assert "actuator.actuator_deadzone does what the network does" in result.stdout
-    assert "Share of the learned change of the input that each signal alone explains: input" in result.stdout
+    assert "Share of the learned change of the input that each signal alone explains: voltage" in result.stdout
     assert "learned.png, named.safetensors, named.json" in result.stdout
     assert "With a network at actuator the mean squared error of the estimation experiments falls from" in result.stdout
-    assert "residual_net at actuator: inputs input, units 4, seed 0" in result.stdout
+    assert "residual_net at actuator: inputs voltage; units 4; seed 0" in result.stdout
     assert "physics alone" in result.stdout
     assert "epoch 1  loss" in result.stderr
 

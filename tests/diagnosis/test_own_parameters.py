@@ -11,6 +11,8 @@ from greybox_torch.diagnosis.own_parameters import Estimate, far_refits
     ("refit", "augmented", "told"),
     [
         (28600.0, (1.2e6, 430.0), True),
+        (0.17e6, (1.2e6, 430.0), True),  # seen: 7 times as large in `fit`, both with a small deviation, without a word
+        (0.9e6, (1.2e6, 430.0), False),
         (1.18e6, (1.2e6, 430.0), False),
         (28600.0, (29000.0, 430.0), False),
         (28600.0, None, False),
@@ -23,7 +25,7 @@ def test_a_refit_far_off_is_told(refit: float, augmented: tuple[float, float] | 
     found = far_refits([Estimate("C_air", "J/K", 1e6, (refit, 1500.0), augmented)])
     assert bool(found) is told
     if refit == 28600.0 and told:
-        assert found[0].startswith("Re-estimated without the effects: C_air = 2.86e+04 J/K (begun with 1e+06). It may")
+        assert found[0].startswith("Re-estimated without the effects: C_air = 2.86e+04 J/K (1.2e+06 with them). It may")
 
 
 @pytest.mark.parametrize(("deviation", "at_bound"), [(None, False), (3e6, False), (1500.0, True)])

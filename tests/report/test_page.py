@@ -156,9 +156,9 @@ def test_how_it_was_made(of_kind: Callable[[str], Verdict], about: About) -> Non
 
 def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict], about: About) -> None:
     verdict = of_kind("found")
-    assert "Ceiling" not in Page(render_page(verdict, about)).text
+    assert "of what the best free curve" not in Page(render_page(verdict, about)).text
     near = replace(verdict, effects=(replace(verdict.effects[0], ceiling=0.88),))
-    assert "Ceiling 88 % of the gain of the best free curve" in Page(render_page(near, about)).text
+    assert "Form 88 % of what the best free curve in the law's place improves" in Page(render_page(near, about)).text
 
 
 def test_where_along_the_experiments(of_kind: Callable[[str], Verdict], about: About) -> None:

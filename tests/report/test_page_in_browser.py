@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from greybox_torch.diagnosis.beliefs import Beliefs
-from greybox_torch.diagnosis.effect import FreeCurve
+from greybox_torch.diagnosis.curve import FreeCurve
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
 from greybox_torch.diagnosis.own_parameters import Estimate
 from greybox_torch.diagnosis.traces import InputTrace

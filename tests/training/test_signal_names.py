@@ -9,7 +9,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.mechanisms.network import spoken
-from greybox_torch.training.signal_names import local_names, told_names
+from greybox_torch.training.signal_names import local_names, names_in_model, told_names
 
 
 class Room(gt.GreyBoxModel):
@@ -56,6 +56,8 @@ def test_the_names_of_the_model_are_those_of_the_port() -> None:
         "input@sun",
         "none",
     )
+    told = names_in_model(room, zone, ("level", "level@mass", "input@sun", "time"))
+    assert told == ("air", "wall", "sun", "time"), 'seen: "inputs input@wind/level/input@outside"'
     assert [spoken(s) for s in ("level", "input@sun", "level@mass")] == ["level", "sun", "level of mass"]
 
 

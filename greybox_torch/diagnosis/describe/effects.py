@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -11,26 +11,28 @@ import numpy as np
 
 from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out
 from greybox_torch.diagnosis.confirm.held_out import Gain
+from greybox_torch.diagnosis.describe.amplitudes import wave_amplitudes
 from greybox_torch.diagnosis.describe.conversion_as_gain import conversion_as_gain
 from greybox_torch.diagnosis.describe.equation import equation
 from greybox_torch.diagnosis.describe.indistinguishable import one_of
 from greybox_torch.diagnosis.describe.law_over_data import over_data
+from greybox_torch.diagnosis.describe.line_tried import line_tried
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
 from greybox_torch.diagnosis.describe.one_direction import with_likes
 from greybox_torch.diagnosis.describe.profiles import (
     explained_energy,
     local_signals,
-    most_of,
     profile,
-    unit_at,
     with_samples,
 )
+from greybox_torch.diagnosis.describe.shared_with_parameters import shared_with_parameters
 from greybox_torch.diagnosis.describe.sign_of_term import sign_of_term
-from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name, unit_told
 from greybox_torch.diagnosis.describe.straight_line import straight_line
+from greybox_torch.diagnosis.describe.where import where
 from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.describe.without_unit import without_unit
-from greybox_torch.diagnosis.effect import Effect, Profile, Timeline
+from greybox_torch.diagnosis.effect import Effect, Profile
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest, lowest_limit
@@ -40,17 +42,10 @@ from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.select.told_from_time import limited_by_time
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.notes import at_bounds
-from greybox_torch.in_unit import in_unit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model.ports import Port
-
-NEARLY_ALL = 0.75
-"""Share of a signal's range from which an interval within it says nothing of where an effect is."""
-
-LEAST_MORE = 0.1
-"""By how much an interval's share of what an effect explains exceeds that of the samples for it to say anything."""
 
 
 @dataclass(frozen=True)
@@ -127,9 +122,10 @@ def _effect(
         members = members.finding_with(first["value"])
     named = partial(signal_name, model.base, site)
     own = "" if curve is None else named(curve.signal)
-    curve = as_named(with_samples(curve, local), model.base, site, mechanism.signals()[:1])
+    curve = as_named(with_samples(curve, local, mechanism.repeats), model.base, site, mechanism.signals()[:1])
     memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
     line = straight_line(curve if isinstance(mechanism, Unknown) and not mechanism.kinematic else None, site, own)
+    tried = None if line else line_tried(study, state.current, final, attachment, site)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,
@@ -149,11 +145,16 @@ def _effect(
         timelines=timelines,
         one_of=members,
         law=mechanism.name,
-        equation=line or equation(attachment, site, around, named, list(parameters)),
+        equation=line
+        or ("" if tried is None else tried.equation)
+        or equation(attachment, site, around, named, list(parameters)),
         at_bounds=tuple(n.removeprefix(prefix) for n in at_bounds(final.problem) if n.startswith(prefix)),
         form=mechanism.nature if mechanism.free else "",
         of_units=conversion_as_gain(attachment, around, parameters)
         or without_unit(attachment, site, around, parameters),
+        amplitudes=wave_amplitudes(attachment, final),
+        of_line="" if tried is None else tried.told,
+        shared=shared_with_parameters(state.current, attachment, final.problem, curve),
         of_sign=sign_of_term(state.current, final, attachment),
         limited=why_limited(uncapped, limit, gain, study.settings),
         size=account.size,
@@ -212,39 +213,7 @@ def _profiles(
     around = study.surroundings[attachment.port]
     wanted = attachment.mechanism.signals() or tuple(site.signals)[:1]
     return tuple(
-        profile(signal_name(model.base, site, name), unit_at(around, name), local[name], energy)
+        profile(signal_name(model.base, site, name), unit_told(model.base, site, around, name), local[name], energy)
         for name in wanted
         if name in local and np.ptp(local[name]) > 0
     )
-
-
-def where(
-    profiles: Sequence[Profile], timelines: Sequence[Timeline], beyond: tuple[float | None, float | None] | None = None
-) -> str:
-    """In words: the first signal's interval that holds most of the explained error energy, and the experiment with most per second.
-
-    Args:
-        beyond: below and above which value of that signal the law acts alone, where it does so: errors elsewhere are what comes of that.
-    """
-    strongest = max(timelines, key=lambda t: t.intensity).experiment if len(timelines) > 1 else ""
-    also = f", strongest in {strongest}" if strongest else ""
-    if not profiles:
-        return f"what it explains is spread over the whole recordings{also}"
-    first = profiles[0]
-    if beyond is not None:
-        ends = [f"{first.signal} {sign} {end:.4g}" for sign, end in zip("<>", beyond, strict=True) if end is not None]
-        return f"it acts where {in_unit(' or '.join(ends), first.unit)}{also}"
-    low, high, share = most_of(first)
-    within = (first.edges[:-1] >= low) & (first.edges[1:] <= high)
-    if high - low > NEARLY_ALL * (first.edges[-1] - first.edges[0]) or (
-        first.seen is not None and share < first.seen[within].sum() + LEAST_MORE
-    ):
-        return where((), timelines)
-    inside = np.clip(first.levels, first.edges[0], first.edges[-1])
-    levels = [v for v, i in zip(first.levels, inside, strict=True) if low <= i < high or i == high == first.edges[-1]]
-    lies = (
-        f"where {first.signal} = {levels[0]:.4g}"
-        if len(levels) == 1
-        else f"within {low:.3g} < {first.signal} < {high:.3g}"
-    )
-    return f"{100 * share:.0f} % of what it explains lies {in_unit(lies, first.unit)}{also}"

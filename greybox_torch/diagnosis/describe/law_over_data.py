@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 import torch
 
+from greybox_torch.diagnosis.curve import Curve, FreeCurve
 from greybox_torch.diagnosis.describe.profiles import law_curve
-from greybox_torch.diagnosis.effect import Curve, FreeCurve
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.screen.candidates import FLEXIBLE
 from greybox_torch.diagnosis.screen.score_test import Projected, Screen

@@ -18,6 +18,7 @@ from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.mechanisms.waves import drawn_within
 from greybox_torch.simulation.simulator import Simulator
 
 BINS = 24
@@ -77,7 +78,7 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
         return None
     name = _over(attachment.mechanism, around)
-    grid = _grid(attachment.mechanism, around, name)
+    grid = _grid(attachment, around, name, problem)
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
@@ -106,18 +107,30 @@ def unit_at(around: Surroundings, signal: str) -> str:
     return around.units.get(signal, around.force_unit if signal == "load" and "speed" in around.units else "")
 
 
-def _grid(mechanism: Mechanism, around: Surroundings, signal: str) -> torch.Tensor:
-    """Values of the signal that a law is drawn over, within its range: more of them where a free curve is over a part of that."""
-    span = around.ranges[signal]
+def _grid(attachment: Attachment, around: Surroundings, signal: str, problem: Problem) -> torch.Tensor:
+    """Values of the signal that a law is drawn over, within its range: more of them where a free curve is over a part of that, and of a law
+    that repeats those of a turn, as so many turns would be drawn as a band.
+    """
+    span, mechanism = around.ranges[signal], attachment.mechanism
+    if mechanism.repeats and (order := attachment.own(problem.values_by_name)["order"]):
+        return torch.linspace(0.0, drawn_within(order, unit_at(around, signal)), POINTS, dtype=torch.float64)
     if isinstance(mechanism, Unknown):
         grid = mechanism.grid(around, POINTS)
         return grid[(grid >= span.low) & (grid <= span.high)]
     return torch.linspace(span.low, span.high, POINTS, dtype=torch.float64)
 
 
-def with_samples(curve: Curve | None, along: Mapping[str, np.ndarray]) -> Curve | None:
-    """The curve with how many samples lie where along it, by the signals ``along`` the records (N,)."""
+def with_samples(curve: Curve | None, along: Mapping[str, np.ndarray], repeats: bool = False) -> Curve | None:
+    """The curve with how many samples lie where along it, by the signals ``along`` the records (N,).
+
+    Args:
+        repeats: whether it does beyond its ends, where samples count as well.
+    """
     if curve is None or curve.signal not in along:
         return curve
-    ends = float(np.min(curve.values)), float(np.max(curve.values))
-    return replace(curve, seen=np.histogram(along[curve.signal], SEEN_BINS, ends)[0]) if ends[0] < ends[1] else curve
+    low, high = float(np.min(curve.values)), float(np.max(curve.values))
+    if not low < high:
+        return curve
+    values = along[curve.signal]
+    values = low + np.mod(values - low, high - low) if repeats else values
+    return replace(curve, seen=np.histogram(values, SEEN_BINS, (low, high))[0])

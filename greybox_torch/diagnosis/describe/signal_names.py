@@ -5,7 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from greybox_torch.diagnosis.describe.profiles import unit_at
 from greybox_torch.diagnosis.effect import Curve
+from greybox_torch.mechanisms.added_declarations import position_unit
+from greybox_torch.mechanisms.mechanism import Surroundings
 from greybox_torch.mechanisms.unknown import INPUT
 from greybox_torch.model import Coupling, GreyBoxModel
 from greybox_torch.model.along_motion import ALONG, DIRECTION
@@ -21,16 +24,29 @@ def as_named(curve: Curve | None, model: GreyBoxModel, site: Port, own: tuple[st
     multiplies it goes by the model's name.
 
     Args:
-        own: the signal that the effect's first name stands for, which "load" and "deflection" may be beside.
+        own: the signal that the effect's first name stands for, which "load", "deflection" and "position" may be beside.
     """
     if curve is None:
         return None
-    another = curve.signal in ("load", "deflection") and curve.signal not in own
+    another = curve.signal in ("load", "deflection", "position") and curve.signal not in own
     if curve.factor is not None:
         factor = replace(curve.factor, signal=signal_name(model, site, curve.factor.signal))
         curve = replace(curve, factor=factor)
     named = curve.signal == TURN or "@" in curve.signal or another
+    if curve.signal == "position" and not curve.unit:
+        curve = replace(curve, unit=_unit_of_position(model, site))
     return replace(curve, signal=signal_name(model, site, curve.signal)) if named else curve
+
+
+def unit_told(model: GreyBoxModel, site: Port, around: Surroundings, signal: str) -> str:
+    """The unit of a port's signal; at a coupling its position is that of the driving body."""
+    unit = unit_at(around, signal)
+    return _unit_of_position(model, site) if signal == "position" and not unit else unit
+
+
+def _unit_of_position(model: GreyBoxModel, site: Port) -> str:
+    body = driving_body(model.all_ports)
+    return position_unit(model, body) if isinstance(site, Coupling) and body is not None else ""
 
 
 def signal_name(model: GreyBoxModel, site: Port, signal: str) -> str:

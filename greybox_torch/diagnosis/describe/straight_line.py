@@ -48,10 +48,19 @@ def straight_line(curve: Curve | None, site: Port, signal: str) -> str:
     left = curve.force - slope * curve.values - at_zero
     if not variance or np.average(left**2, weights=visits) > STRAIGHT * variance:
         return ""
-    term = f"{digits(float(slope), 3)} * {name}"
-    if abs(at_zero) < NEXT_TO_NOTHING * np.ptp(curve.force):
-        return f"port.{site.name} += {term}"
-    return f"port.{site.name} += {term} {'-' if at_zero < 0 else '+'} {digits(abs(float(at_zero)), 3)}"
+    nothing = abs(at_zero) < NEXT_TO_NOTHING * np.ptp(curve.force)
+    return as_equation(site.name, float(slope), 0.0 if nothing else float(at_zero), name)
+
+
+def as_equation(port: str, slope: float, at_zero: float, signal: str, factor: str = "") -> str:
+    """``port.NAME += slope * signal + constant``, all of it times a factor where there is one."""
+    line = f"{digits(slope, 3)} * {signal}"
+    if at_zero:
+        line += f" {'-' if at_zero < 0 else '+'} {digits(abs(at_zero), 3)}"
+    if not factor:
+        return f"port.{port} += {line}"
+    line, factor = f"({line})" if at_zero else line, factor if factor.isidentifier() else f"({factor})"
+    return f"port.{port} += {line} * {factor}"
 
 
 def _visits(curve: Curve) -> np.ndarray:

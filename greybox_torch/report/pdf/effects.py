@@ -8,7 +8,7 @@ from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.report.pdf.charts import draw_chart
 from greybox_torch.report.pdf.sheets import MARGIN, QUIET, SPACING, Sheets
 from greybox_torch.report.pdf.tables import draw_bars, draw_table
-from greybox_torch.report.sections.effects import Card, Effects, Share
+from greybox_torch.report.sections.effects import OF_A_CURVE, Card, Effects, Share
 
 BARS = {"chosen": "#0868b0", "together": "#84b3d7", "other": "#8b939c"}
 
@@ -48,7 +48,7 @@ def _card(sheets: Sheets, card: Card) -> None:
     facts += [("Size", brought)] if card.size else []
     explained = f"{card.explained} of the mismatch in free runs of the validation experiments"
     facts += [("Explains", explained)] if card.explained else []
-    facts += [("Ceiling", f"{card.ceiling} of the gain of the best free curve in its place")] if card.ceiling else []
+    facts += [("Form", f"{card.ceiling} {OF_A_CURVE}")] if card.ceiling else []
     facts += [("Where", card.where)] if card.where else []
     facts += [("Depends on", ", ".join(card.signals))] if card.signals else []
     facts += [("Source", card.source)] if card.source else []

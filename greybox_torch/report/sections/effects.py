@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from markupsafe import Markup
@@ -22,6 +23,9 @@ from greybox_torch.report.time_axis import time_unit
 
 MOST_EXPERIMENTS = 4
 """Experiments of which is drawn where along them an effect acts; with more, those in which it is strongest."""
+
+OF_A_CURVE = "of what the best free curve in the law's place improves; with nearly 100 % no other form of law does much better there"
+"""What the share of a free curve's gain that a law reaches says, in words."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +70,7 @@ class Card:
     size: str
     explained: str
     ceiling: str
+    of_a_curve: ClassVar[str] = OF_A_CURVE
     parameters: tuple[ParameterRow, ...]
     bounded: str
     undetermined: str
@@ -126,7 +131,13 @@ def _card(effect: Effect, shown: Responses | None, explained: str) -> Card:
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
         bounded=effect.bounded,
-        undetermined=". ".join(filter(None, (effect.undetermined, effect.like))),
+        undetermined=text.first_capital(
+            ". ".join(
+                filter(
+                    None, (effect.undetermined, *map(text.first_capital, (effect.of_line, effect.shared)), effect.like)
+                )
+            )
+        ),
         shares=_shares(effect),
         one_effect="" if whole is None or not whole.one_effect else text.first_capital(whole.told_one_effect),
         experiment=effect.separating_experiment if whole is None or whole.separable else "",
@@ -159,6 +170,8 @@ def _parameters(effect: Effect) -> tuple[ParameterRow, ...]:
         )
         meaning, unit = entry.get("description", ""), text.unit(entry.get("unit", ""))
         rows.append(ParameterRow(text.symbol(name), meaning, shown, unit))
+        if size := effect.amplitudes.get(name):
+            rows.append(ParameterRow(text.symbol("amplitude"), "of both together", text.measured(*size), unit))
         if pitch := effect.pitch(name):
             told = "travel in which it repeats, 2 pi over the order"
             rows.append(ParameterRow(text.symbol("pitch"), told, text.measured(*pitch[:2]), text.unit(pitch[2])))

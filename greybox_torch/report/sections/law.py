@@ -24,6 +24,11 @@ HIDDEN = 0.01
 A_GAP = 5
 """A gap is at least so many bins side by side with hardly any sample: a free curve is a guess there; a shorter stretch its ends hold."""
 
+FEW_AT_END = 0.25
+"""Share of the samples that bins with any have as a rule, below which those at either end of a curve have hardly any: nothing holds it
+from beyond.
+"""
+
 _AT_PORT = ("speed", "position", "deflection", "rate", "level", "load", "input", "output")
 """Names that signals have at a port, whatever the model calls them."""
 
@@ -70,15 +75,24 @@ def _ends(curve: Curve) -> tuple[float, float]:
 
 
 def _gaps(curve: Curve) -> np.ndarray:
-    """Which of the curve's values (n,) lie in a gap: among at least A_GAP bins side by side, each with hardly any sample."""
+    """Which of the curve's values (n,) lie in a gap: among at least A_GAP bins side by side, each with hardly any sample, or among those
+    at either end, however many.
+    """
     if curve.seen is None:
         return np.zeros(len(curve.values), dtype=bool)
     few = curve.seen < max(1.0, HARDLY * float(curve.seen.mean()))
     runs = np.split(np.arange(len(few)), np.flatnonzero(np.diff(few)) + 1)
     wide = np.concatenate([np.full(len(run), few[run[0]] and len(run) >= A_GAP) for run in runs])
+    wide |= _few_from_the_end(curve.seen) | _few_from_the_end(curve.seen[::-1])[::-1]
     low, high = _ends(curve)
     place = ((curve.values - low) / (high - low) * len(few)).astype(int)
     return wide[np.clip(place, 0, len(few) - 1)]
+
+
+def _few_from_the_end(seen: np.ndarray) -> np.ndarray:
+    """Which bins (b,), from the first one on, have hardly any sample one after another."""
+    usual = float(np.median(seen[seen > 0])) if (seen > 0).any() else 0.0
+    return np.logical_and.accumulate(seen < FEW_AT_END * usual)
 
 
 def _extrapolated(curve: Curve, known: np.ndarray, x: Scale, y: Scale) -> list[Mark]:
@@ -158,7 +172,8 @@ def _where_seen(effect: Effect, curve: Curve) -> str:
 
 def _over(effect: Effect, curve: Curve) -> str:
     """The model's own name of the curve's signal: an effect of the port's position is one of the state `angle`."""
-    return effect.signals[0] if effect.signals and curve.signal in _AT_PORT else curve.signal
+    its_own = effect.signals and curve.signal in _AT_PORT and curve.signal not in effect.signals
+    return effect.signals[0] if its_own else curve.signal
 
 
 def _times(curve: Curve) -> str:

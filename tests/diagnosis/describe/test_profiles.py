@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 import torch
 
-from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve, unit_at
+from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve, unit_at, with_samples
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Range, Surroundings
+from greybox_torch.mechanisms.torque_ripple import TorqueRipple
+from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model.signals import parameter_signals
 
@@ -25,7 +28,8 @@ def drawn(motor, law: Unknown, highest: int, around: Surroundings = AROUND) -> C
     effect = attach(motor, "rotor", law)
     model = AugmentedModel(motor, [effect], {"rotor": around})
     values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.w_{highest}": 1.0}
-    curve = law_curve(model, effect, around, SimpleNamespace(parameter_tensors=parameter_signals(values)))
+    problem: Any = SimpleNamespace(parameter_tensors=parameter_signals(values))
+    curve = law_curve(model, effect, around, problem)
     assert curve is not None
     return curve
 
@@ -56,3 +60,23 @@ def test_what_multiplies_a_curve_is_given_with_it(motor) -> None:
     assert curve.factor == Factor("position", "rad", 2.5)
     assert curve.force.max() == pytest.approx(2.5, rel=0.02) and curve.force_unit == "N m"
     assert drawn(motor, Unknown("speed"), 5, both).factor is None
+
+
+@pytest.mark.parametrize(("order", "turns"), [(2.0, 1.0), (2.002, 2 / 2.002), (0.25, 4.0)])
+def test_a_law_that_repeats_is_drawn_over_a_turn(motor, order: float, turns: float) -> None:
+    """Seen: a transmission error over the deflection, which it does not depend on, as a level line; a ripple over 150 rad in 201 points."""
+    around = Surroundings({**AROUND.ranges, "position": Range(-90.0, 60.0, 40.0)}, {"position": "rad"}, "N m", 0.01)
+    effect = attach(motor, "rotor", TorqueRipple(order))
+    model = AugmentedModel(motor, [effect], {"rotor": around})
+    values = {q.name: q.value for q in model.declared_parameters} | {f"{effect.prefix}.a": 0.3}
+    problem: Any = SimpleNamespace(parameter_tensors=parameter_signals(values), values_by_name=values)
+    curve = law_curve(model, effect, around, problem)
+    assert curve is not None and curve.signal == "position"
+    assert (curve.values[0], curve.values[-1]) == (0.0, pytest.approx(2 * np.pi * turns))
+    assert np.ptp(curve.force) == pytest.approx(0.6, rel=0.01)
+    over = with_samples(curve, {"position": np.linspace(-90.0, 60.0, 4000)}, repeats=True)
+    assert over is not None and over.seen is not None and over.seen.sum() == 4000
+
+
+def test_a_transmission_error_is_drawn_over_the_position_of_what_drives() -> None:
+    assert TransmissionError.drawn_over == "position" and TransmissionError.repeats

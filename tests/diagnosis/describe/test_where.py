@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.confirm.held_out import timelines
-from greybox_torch.diagnosis.describe.effects import where
 from greybox_torch.diagnosis.describe.profiles import profile
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name
+from greybox_torch.diagnosis.describe.where import where
 from greybox_torch.diagnosis.effect import Curve, Profile, Timeline
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.actuator import TorqueSaturation

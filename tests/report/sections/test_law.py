@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from greybox_torch.diagnosis.effect import Effect, FreeCurve
+from greybox_torch.diagnosis.curve import FreeCurve
+from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.report.chart.marks import RUG
 from greybox_torch.report.chart.panel import Chart
@@ -144,3 +145,14 @@ def test_a_band_behind_its_line_is_told(effect: Effect) -> None:
     narrow = replace(wide, curve=replace(wide.curve, free=free))
     told = [next(k.label for k in drawn(one).legend if "deviations" in k.label) for one in (wide, narrow)]
     assert ["hardly wider than the line" in label for label in told] == [False, True]
+
+
+def test_a_curve_is_dashed_at_its_ends_where_hardly_any_sample_lies() -> None:
+    """Seen: a straight line that bent back over the last tenth of its range, with 40 of 4032 samples, drawn as if it were known."""
+    assert UNKNOWN.curve is not None
+    seen = np.r_[np.full(36, 40), 5, 4, 3, 1]
+    curve = replace(UNKNOWN.curve, free=None, spread=None, seen=seen)
+    marks = drawn(replace(UNKNOWN, curve=curve)).columns[0][0].marks
+    assert [(m.kind, m.series) for m in marks[1:]] == [("line", "effect"), ("line", "beyond")]
+    even = drawn(replace(UNKNOWN, curve=replace(curve, seen=np.full(40, 40)))).columns[0][0].marks
+    assert [(m.kind, m.series) for m in even[1:]] == [("line", "effect")]
