@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from greybox_torch.data import DataSet
-from greybox_torch.errors import UserError
+from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.divergence import FAR, diverges_from
 from greybox_torch.estimate.overflow import NO_NUMBER, Overflow, avoidance, overflows, suggestions
@@ -136,6 +136,8 @@ def evaluate(
     Raises:
         UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.
     """
+    if not isinstance(data, DataSet):
+        raise ArgumentError("data", Kind.of(data), "expected a DataSet first, as in evaluate(data, model=Motor())")
     if model is None and data.model is None:
         raise UserError(f"{data.place('[model] name')} is missing and no model is given; expected one of them")
     given = load_model(str(data.model)) if model is None else model

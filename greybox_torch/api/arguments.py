@@ -34,6 +34,10 @@ def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
     if isinstance(model, type) and issubclass(model, GreyBoxModel):
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
+    if isinstance(model, DataSet):
+        raise ArgumentError(
+            "model", Kind.of(model), "expected a model first, and the data second, as in fit(model, data)"
+        )
     named = f", as load_model({quoted(model)}) gives one" if isinstance(model, str) else ""
     raise ArgumentError("model", Kind.of(model), f"expected a model{named}, or the result of fit or diagnose")
 

@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_model, check_precision
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.free_runs import Runs, figure_files, file_stems, free_runs_json, plot_free_runs
 from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
@@ -97,7 +97,7 @@ class ComparisonResult(Result):
 
 @names_checked
 def compare(
-    data: DataSet,
+    data: Data,
     models: Mapping[str, GreyBoxModel | str | PathLike[str] | Any],
     *,
     device: str = "cpu",
@@ -108,7 +108,7 @@ def compare(
     A model whose simulation overflows is reported so, beside the others.
 
     Args:
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         models: by the name they are to have: models with the values that they hold, results of a fit or a diagnosis, or checkpoints by
             path. What the data set's card says of parameters and start states is meant for the first of them, and for others of its kind.
         device: "cpu", "cuda" or "cuda:N".
@@ -121,7 +121,9 @@ def compare(
         ``compare(data, {"start": Motor(), "fit": fitted, "earlier": "results/model"}).plot()``
     """
     device, precision = check_device(device), check_precision(precision)
-    check_data(data)
+    if isinstance(models, DataSet):
+        raise ArgumentError("models", Kind.of(models), 'expected the data first: compare(data, {"start": Motor()})')
+    data = check_data(data)
     if not isinstance(models, Mapping) or not models:
         kind = Kind("none") if isinstance(models, Mapping) else Kind.of(models)
         raise ArgumentError("models", kind, 'expected models by name, such as {"start": Motor(), "fit": result}')

@@ -5,8 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from greybox_torch.api.design_files import CARD, INPUT, RECORDED
 from greybox_torch.api.design_groups import AGAINST_GROUPS
+from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.experiment_design.limits import EVERY_INPUT, WIDENED
 from greybox_torch.in_unit import in_unit
@@ -17,6 +20,8 @@ if TYPE_CHECKING:
 
 SMALL = 0.25
 """Share of its range of which an input that takes less is small."""
+FASTER = 2.0
+"""Times the fastest change that was recorded from which a change is faster."""
 CLOSE = 0.02
 """Share of its range within which an output is close to its limit."""
 
@@ -24,6 +29,7 @@ CLOSE = 0.02
 def design_notes(found: DesignResult) -> list[str]:
     """Sentences for below the table, one a line."""
     lines = [*found.left_out, *_told_apart(found), *_deviations(found), *recorded_as_limits(found), *_in_the_way(found)]
+    lines += _unlimited_rates(found)
     if found.limits.seconds > 1.001 * found.seconds:
         lines.append(
             f"Designed for the first {digits(found.seconds, 4)} of {digits(found.limits.seconds, 4)} s; "
@@ -68,6 +74,30 @@ def recorded_as_limits(found: DesignResult) -> Iterator[str]:
         )
     if limits.kept:
         yield from _kept(found)
+
+
+def _unlimited_rates(found: DesignResult) -> Iterator[str]:
+    """Which inputs and set points without a rate change faster than they ever did in the recordings."""
+    for name in found.limits.designed:
+        signal = found.follows.get(name, name)
+        values = found.set_points[signal] if name in found.follows else found.inputs[name]
+        step = float(found.time[1] - found.time[0])
+        change = float(np.abs(np.diff(values)).max())
+        if np.isfinite(found.limits.commanded[name].rate) or change <= FASTER * step * _fastest(found.data, signal):
+            continue
+        unit = found.data.channels[signal].unit
+        yield (
+            f"Nothing limits how fast {f'the set point of {signal}' if signal != name else name} changes: here by "
+            f"{in_unit(digits(change, 3), unit)} from one sample to the next, {digits(step, 3)} s later, faster than in any recording. "
+            f"Where that is too fast for the machine, give its rate, per second, under [limits] on the card (in Python limits=): "
+            f"{signal} = {{ rate = … }}."
+        )
+
+
+def _fastest(data: DataSet, name: str) -> float:
+    """The fastest change of a channel from one sample to the next in any recording, in its unit per second."""
+    rates = [np.abs(np.diff(r.signals[name]) / np.diff(r.time)) for r in data.recordings]
+    return max(float(rate[np.isfinite(rate)].max(initial=0.0)) for rate in rates)
 
 
 def _in_the_way(found: DesignResult) -> Iterator[str]:

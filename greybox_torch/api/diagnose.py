@@ -9,7 +9,7 @@ from typing import Any
 
 from greybox_torch.api.arguments import check_estimation, check_model, check_moving
 from greybox_torch.api.asked_of_channels import asked_where_poor, poor
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.plain_arguments import check_device, check_kind, check_seconds, check_seed, check_told
 from greybox_torch.codegen.build import check_compiler
@@ -37,7 +37,7 @@ LIKE_A_SLIP = ("unknown", "input_gain", "sensor_gain")
 @names_checked
 def diagnose(
     model: GreyBoxModel | Any,
-    data: DataSet,
+    data: Data,
     *,
     time_limit: float | None = None,
     settings: DiagnosisSettings | None = None,
@@ -56,7 +56,7 @@ def diagnose(
     Args:
         model: searched from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. It stays as it is; the result's ``model`` is a copy with the effects that were found.
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         time_limit: seconds after which the best answer so far is given, with a list of what was not tried. Only two
             steps may take longer, as no answer is possible without them: the fit of the model as it stands, and the
             comparison of the result with all experiments. Where the model found is poor, a few short refits ask besides, within
@@ -83,7 +83,8 @@ def diagnose(
     limit = None if time_limit is None else check_seconds("time_limit", time_limit)
     check_told("progress", progress)
     check_told("on_progress", on_progress, "a Progress")
-    check_estimation(check_data(data))
+    data = check_data(data)
+    check_estimation(data)
     if device == "cpu":
         check_compiler("a diagnosis")
     make_problem(data, given, data.recordings)  # all of them fit the model, whatever the search takes first

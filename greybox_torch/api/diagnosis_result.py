@@ -43,9 +43,8 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class FoundParameter:
-    """A parameter of the model that a diagnosis recommends, in ``unit``. ``std`` is None where the search did not compute it, for
-    parameters that are no effect's and where it was stopped before whole records were fitted; infinite where the recordings do not
-    determine the parameter.
+    """A parameter of the model that a diagnosis recommends, in ``unit``. ``std`` is None where the search did not compute it, as of what
+    is fixed and where it was stopped before whole records were fitted; infinite where the recordings do not determine the parameter.
     """
 
     value: float
@@ -95,7 +94,9 @@ class DiagnosisResult(Result):
     @cached_property
     def parameters(self) -> dict[str, FoundParameter]:
         """Of the model with its effects, by name: value, standard deviation, unit, and whether it was fixed."""
-        deviations: dict[str, Any] = {}
+        deviations: dict[str, Any] = {
+            one.name: (one.refit if one.augmented is None else one.augmented)[1] for one in self.verdict.parameters
+        }
         for effect in self.effects:
             prefix = f"{effect.prefix}."
             deviations |= {f"{prefix}{name}": entry.get("std") for name, entry in effect.parameters.items()}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any, Literal, overload
 
 from greybox_torch.api.arguments import check_model
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.export_result import ExportResult, SnippetResult
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, UserError, did_you_mean
@@ -40,7 +40,7 @@ def export(
     model: GreyBoxModel | Any,
     to: Literal["mjcf", "urdf"],
     *,
-    data: DataSet | None = None,
+    data: Data | None = None,
     name: str | None = None,
     step: float | None = None,
 ) -> SnippetResult: ...
@@ -49,7 +49,7 @@ def export(
     model: GreyBoxModel | Any,
     to: Literal["c", "torch", "fmu"],
     *,
-    data: DataSet | None = None,
+    data: Data | None = None,
     name: str | None = None,
     step: float | None = None,
 ) -> ExportResult: ...
@@ -58,7 +58,7 @@ def export(
     model: GreyBoxModel | Any,
     to: str,
     *,
-    data: DataSet | None = None,
+    data: Data | None = None,
     name: str | None = None,
     step: float | None = None,
 ) -> ExportResult | SnippetResult: ...
@@ -66,7 +66,7 @@ def export(
     model: GreyBoxModel | Any,
     to: str,
     *,
-    data: DataSet | None = None,
+    data: Data | None = None,
     name: str | None = None,
     step: float | None = None,
 ) -> ExportResult | SnippetResult:
@@ -103,7 +103,8 @@ def export(
         return SnippetResult(given, to, SNIPPETS[to](given, identifier_of(given, name)))
     hold = "zoh"
     if data is not None:
-        hold = check_data(data).hold
+        data = check_data(data)
+        hold = data.hold
         step = _needed(given, data) if step is None else step
     made = exported(given, name, step, hold)
     return ExportResult(

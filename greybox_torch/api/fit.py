@@ -8,7 +8,7 @@ from typing import Any
 
 from greybox_torch.api.arguments import check_estimation, check_model, check_moving, check_precision
 from greybox_torch.api.asked_of_channels import asked_where_poor
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.api.plain_arguments import check_device, check_names, check_seed, check_told, check_whole
 from greybox_torch.data import DataSet
@@ -31,7 +31,7 @@ MOST_STARTS = 4096
 @names_checked
 def fit(
     model: GreyBoxModel | Any,
-    data: DataSet,
+    data: Data,
     *,
     starts: int | None = None,
     seed: int = 0,
@@ -45,7 +45,7 @@ def fit(
     Args:
         model: estimated from the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else
             the declared ones. It stays as it is; the result's ``model`` is a copy with the estimates.
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         starts: how many sets of start values to try, drawn around those given; by default only those given, and many
             where these turn out poor.
         seed: of the random start values.
@@ -67,7 +67,8 @@ def fit(
     given, device, precision = check_model(model), check_device(device), check_precision(precision)
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
     check_told("progress", progress)
-    check_estimation(check_data(data))
+    data = check_data(data)
+    check_estimation(data)
     problem = make_problem(data, given, data.estimation())
     check_moving(data, given)
     names = check_names("profiles", profiles)

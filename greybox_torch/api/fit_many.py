@@ -5,10 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from os import PathLike
 from typing import Any
 
 from greybox_torch.api.arguments import check_estimation, check_model, check_moving, check_precision
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.fit import MOST_STARTS, fit
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.api.plain_arguments import check_device, check_seed, check_told, check_whole
@@ -46,7 +47,7 @@ class _Machine:
 @names_checked
 def fit_many(
     model: GreyBoxModel | Any,
-    data: Iterable[DataSet],
+    data: Iterable[Data],
     *,
     starts: int | None = None,
     seed: int = 0,
@@ -63,7 +64,7 @@ def fit_many(
 
     Args:
         model: estimated for each data set from the values that it holds or that its card gives, see :func:`fit`.
-        data: a data set for each machine, with start values, bounds and what is fixed of its own.
+        data: a data set for each machine, or its card by path, with start values, bounds and what is fixed of its own.
         starts: how many sets of start values to try for each; by default only those given, and many where these turn
             out poor.
         seed: of the random start values.
@@ -86,7 +87,7 @@ def fit_many(
     starts = None if starts is None else check_whole("starts", starts, 1, MOST_STARTS)
     check_seed(seed)
     check_told("progress", progress)
-    if isinstance(data, DataSet):
+    if isinstance(data, DataSet | str | PathLike):
         raise ArgumentError("data", Kind.of(data), "expected a list of data sets, one for each machine")
     sets = [check_data(each) for each in data]
     result: list[FitResult | Failure | None] = [None] * len(sets)

@@ -6,7 +6,8 @@ import time
 import traceback
 from dataclasses import replace
 
-from greybox_torch.data.card import read_card
+from greybox_torch.data import load_dataset
+from greybox_torch.data.card import Card, read_card
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.fleets.fingerprint import fingerprint
 from greybox_torch.fleets.job import Job
@@ -24,7 +25,7 @@ def diagnose_machine(job: Job) -> tuple[Row, bool]:
     try:
         card = read_card(job.card)
         row = row.described(card)
-        row = replace(row, fingerprint=fingerprint(job, card))
+        row = replace(row, fingerprint=_fingerprint(job, card))
         done = stored(job, row.fingerprint)
         if done is not None:
             return done, True
@@ -45,7 +46,7 @@ def without_a_diagnosis(job: Job) -> tuple[Row, bool] | None:
     try:
         card = read_card(job.card)
         row = row.described(card)
-        done = stored(job, fingerprint(job, card)) if (job.folder / ROW).is_file() else None
+        done = stored(job, _fingerprint(job, card)) if (job.folder / ROW).is_file() else None
         return None if done is None else (done, True)
     except UserError as error:
         return _failed(
@@ -53,6 +54,15 @@ def without_a_diagnosis(job: Job) -> tuple[Row, bool] | None:
         ), False
     except Exception:  # of another kind: the worker that has it says what
         return None
+
+
+def _fingerprint(job: Job, card: Card) -> str:
+    """The fingerprint; of a recording that cannot be read, reading the data set says more: card, experiment, and the near name."""
+    try:
+        return fingerprint(job, card)
+    except UserError:
+        load_dataset(job.card)
+        raise
 
 
 def _empty(job: Job) -> Row:

@@ -11,7 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.text import Text
 
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.checking.constant_channels import rests
@@ -151,18 +151,18 @@ class InspectionResult(Result):
 
 
 @names_checked
-def inspect(data: DataSet, model: GreyBoxModel | str | None = None) -> InspectionResult:
+def inspect(data: Data, model: GreyBoxModel | str | None = None) -> InspectionResult:
     """Look at the channels of a data set, and check it against a model.
 
     Args:
-        data: from :func:`greybox_torch.load_dataset`, or made with ``DataSet(…)``.
+        data: from :func:`greybox_torch.load_dataset`, or made with ``DataSet(…)``; or a card by path.
         model: an object, or a name as :func:`greybox_torch.load_model` takes it; by default the card's. Without
             a model only the data are looked at.
 
     Raises:
         UserError: channels, parameters or start states are not the model's, or an argument is at fault.
     """
-    check_data(data)
+    data = check_data(data)
     wanted = data.model if model is None else model
     if wanted is None:
         return InspectionResult(data)

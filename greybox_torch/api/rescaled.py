@@ -1,4 +1,5 @@
-"""Whether a channel is read with another scale than it was recorded in: asked where an estimate simulates the validation experiments badly.
+"""Whether a channel is read with another scale than it was recorded in, or a temperature from another zero: asked where an estimate
+simulates the validation experiments badly.
 
 Free parameters make up for a part of a wrong scale, so that a refit alone does not tell 100 from 60. The start values, which are right
 within less than that on most cards, do.
@@ -22,7 +23,7 @@ from greybox_torch.api.short_refits import (
     judging,
 )
 from greybox_torch.data import DataSet
-from greybox_torch.data.units import per_minute
+from greybox_torch.data.units import conversion, per_minute
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.simulation.simulator import Simulator
@@ -33,6 +34,8 @@ DECADES = (10.0, 100.0, 1000.0)
 PER_MINUTE, DEGREES, TURNS_PER_MINUTE = 60.0, 180.0 / np.pi, 30.0 / np.pi
 """Those of units with a time, of units with an angle, and of angular speeds."""
 
+TEMPERATURES = ("degC", "K", "degF")
+
 _ANGULAR_SPEED = re.compile(r"(m?rad|deg|°)\s*/\s*(s|min)|rpm")
 
 MOST_CHANNELS = 8
@@ -40,9 +43,9 @@ MOST_CHANNELS = 8
 
 
 def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
-    """A question to the user, where other values of one channel, by a factor that units differ by, make a short refit far better on the
-    validation experiments than these are as they stand; else None. Only factors are refitted with which the start values alone simulate
-    better.
+    """A question to the user, where other values of one channel, by a factor or a zero that units differ by, make a short refit far better
+    on the validation experiments than these are as they stand; else None. Only changes are refitted with which the start values alone
+    simulate better.
 
     Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
     """
@@ -73,6 +76,15 @@ def _changes(model: GreyBoxModel) -> Iterator[Change]:
                 larger, smaller = _question(signal.name, times, "as large"), _question(signal.name, times, "smaller")
                 yield Change({signal.name: signal.name}, larger, times)
                 yield Change({signal.name: signal.name}, smaller, 1.0 / times)
+            yield from _of_other_zero(signal.name, signal.unit.strip())
+
+
+def _of_other_zero(name: str, unit: str) -> Iterator[Change]:
+    """A temperature in another unit than its own. Seen: a floor of 287 K read as degC, and a scale of 1 given to end the warning of it."""
+    for other in TEMPERATURES if unit in (*TEMPERATURES, "°C", "°F") else ():
+        factor, offset = conversion(other, unit, "")
+        if offset:
+            yield Change({name: name}, f"Is {name} recorded in {other}? Converted to {unit}", factor, more=offset)
 
 
 def _factors(unit: str) -> list[float]:

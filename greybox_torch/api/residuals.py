@@ -11,9 +11,9 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_experiment
+from greybox_torch.api.data_argument import Data
 from greybox_torch.api.result import Result
 from greybox_torch.api.simulate import START, simulate
-from greybox_torch.data import DataSet
 from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.evaluation import Evaluation
 from greybox_torch.keywords import names_checked
@@ -132,13 +132,13 @@ class ResidualResult(Result):
 
 @names_checked
 def residuals(
-    model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
+    model: GreyBoxModel | Any, data: Data, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> ResidualResult:
     """Test the errors of a model's free runs: whether they are white, and whether the inputs still explain part of them.
 
     Args:
         model: with the values that it holds, as for :func:`greybox_torch.simulate`; a result of a fit or a diagnosis stands for its model.
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         name: what the model is called in the result; by default as for :func:`greybox_torch.simulate`.
         device: "cpu", "cuda" or "cuda:N".
         precision: "double" or "single".

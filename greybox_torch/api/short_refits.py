@@ -37,8 +37,8 @@ AS_GOOD = 1.2
 @dataclass(frozen=True)
 class Change:
     """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
-    where its sign is turned, and ``factors`` by which those of single channels are; ``only`` the recordings that are changed, by name, all
-    where it is empty.
+    where its sign is turned, and ``factors`` by which those of single channels are; ``more`` is added to them then; ``only`` the recordings
+    that are changed, by name, all where it is empty.
     """
 
     read: Mapping[str, str]
@@ -46,12 +46,14 @@ class Change:
     factor: float = 1.0
     only: tuple[str, ...] = ()
     factors: Mapping[str, float] = field(default_factory=dict)
+    more: float = 0.0
 
     def of(self, recording: Recording) -> Recording:
         """A recording with the change."""
         if self.only and recording.name not in self.only:
             return recording
-        changed = {n: self.factor * self.factors.get(n, 1.0) * recording.signals[o] for n, o in self.read.items()}
+        times = {n: self.factor * self.factors.get(n, 1.0) for n in self.read}
+        changed = {n: times[n] * recording.signals[o] + self.more for n, o in self.read.items()}
         between = {name: recording.between[other] for name, other in self.read.items() if other in recording.between}
         kept = {name: marked for name, marked in recording.between.items() if name not in self.read}
         return replace(recording, signals={**recording.signals, **changed}, between={**kept, **between})

@@ -14,7 +14,7 @@ from rich.console import Console
 from rich.text import Text
 
 from greybox_torch.api.arguments import check_model, check_precision
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json, plot_free_runs
 from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
@@ -178,14 +178,14 @@ def _correlation(measured: np.ndarray, simulated: np.ndarray) -> float:
 
 @names_checked
 def simulate(
-    model: GreyBoxModel | Any, data: DataSet, *, name: str | None = None, device: str = "cpu", precision: str = "double"
+    model: GreyBoxModel | Any, data: Data, *, name: str | None = None, device: str = "cpu", precision: str = "double"
 ) -> SimulationResult:
     """Simulate every experiment in free run, from start states estimated on its first tenth.
 
     Args:
         model: used with the values that it holds: those set by ``set_values()``, else the start values of the data set's card, else the
             declared ones. The result of a fit or a diagnosis stands for its model.
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         name: what the model is called in the result; by default "refit" for the result of a fit, "augmented" for those of ``diagnose`` and
             ``train`` and for a model with effects, "held values" for one that holds some (``fit.model``, or after ``set_values()``), else
             "start".

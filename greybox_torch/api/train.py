@@ -10,12 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.arguments import check_estimation, check_model, check_moving
-from greybox_torch.api.data_argument import check_data
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.plain_arguments import check_device, check_kind, check_names, check_told, check_whole
 from greybox_torch.api.train_range import beyond_learned
 from greybox_torch.api.train_result import TrainingResult
 from greybox_torch.api.train_scores import HYBRID, free_runs_of
-from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.keywords import names_checked
@@ -29,7 +28,7 @@ MOST_MEMBERS = 1000
 @names_checked
 def train(
     model: GreyBoxModel | Any,
-    data: DataSet,
+    data: Data,
     *,
     net: str | None = None,
     port: str | None = None,
@@ -49,7 +48,7 @@ def train(
     Args:
         model: the physics, estimated first, from the values that it holds: those set by ``set_values()``, else the start values of the data
             set's card, else the declared ones. It stays as it is; the result's ``model`` is a copy with the trained network.
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         net: "friction" (a body's speed, and what else is asked for) or "residual" (any signals at any port), or "memory" (the
             same with hidden states). By default friction at a body, else residual.
         port: where it acts; by default the first body that the model declares, and the first port of a model without bodies.
@@ -74,7 +73,8 @@ def train(
     """
     given, device = check_model(model), check_device(device)
     check_told("progress", progress, "a Report")
-    check_estimation(check_data(data))
+    data = check_data(data)
+    check_estimation(data)
     check_kind("settings", settings, TrainingSettings)
     count = check_whole("ensemble", ensemble, 1, MOST_MEMBERS)
     if resume and snapshot is None:

@@ -10,7 +10,9 @@ from greybox_torch.checking.influence import Influence
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.own_rate import balanced_state
 from greybox_torch.model.states_of import inputs_of
+from greybox_torch.name_lists import listed
 
 
 def without_effect(
@@ -47,7 +49,7 @@ def without_effect(
             )
     for i, signal in enumerate(model.inputs):
         if not influence.moves["input"][i].any():
-            serves = _port_that_reads(model, signal.name)
+            serves, told = _port_that_reads(model, signal.name), _with_curves_over_inputs(model)
             found, write = (
                 f"input '{signal.name}' moves no output",
                 f"{read_as('u', signal.name)} in derivative() or output()",
@@ -55,6 +57,8 @@ def without_effect(
             if serves:
                 found += f": laws that are attached at port '{serves}' may depend on it, the model does not"
                 write = f"it as it is, if that is meant; else {write}"
+            elif told:
+                write = f"{write}; or nothing, if diagnose or train is to find what it does at {listed(told, 'or')}"
             level = "note" if serves else "warning"
             yield Finding(level, "influence", found, write, source.file, source.line_of(f'"{signal.name}"'))
     for i, state in enumerate(model.states):
@@ -77,6 +81,11 @@ def _port_that_reads(model: GreyBoxModel, name: str) -> str:
     """The port of which a signal, such as the load that a body carries, depends on an input; "" for none."""
     functions = ((port.name, s) for port in model.ports for s in port.signals.values() if not isinstance(s, str))
     return next((port for port, signal in functions if name in inputs_of(model, signal)), "")
+
+
+def _with_curves_over_inputs(model: GreyBoxModel) -> list[str]:
+    """The bodies and balances at which curves over an input that the equations do not use are tried."""
+    return [port.name for port in model.ports if balanced_state(model, port)]
 
 
 def _appears(traced: Traced, kind: str, index: int) -> bool:

@@ -16,10 +16,13 @@ from typer.core import TyperGroup
 
 from greybox_torch.commands.options import json_alone
 from greybox_torch.errors import ArgumentError, NothingToDo, NumericalError, UserError
+from greybox_torch.files import json_text
 
 
 class Commands(TyperGroup):
     """Exit codes, in one place: 2 the user's input is at fault, 3 the numbers failed, 4 there is nothing to do, 130 interrupted.
+
+    With --json, standard output is empty after an error: there is no result. That there is nothing to do is one.
 
     Files are written by `greybox_torch.files`, with messages of its own, so an error of the system here is one of standard output.
     """
@@ -37,6 +40,10 @@ class Commands(TyperGroup):
             told = error.for_position() if error.argument in positions else error.for_option()
             raise _stop(f"error: {told}", 2) from None
         except NothingToDo as told:
+            if "--json" in given:
+                typer.echo(
+                    json_text({"schema": f"greybox-{ctx.invoked_subcommand}/1", "nothing_to_do": str(told)}), nl=False
+                )
             raise _stop(str(told), 4) from None
         except UserError as error:
             raise _stop(f"error: {error}", 2) from None

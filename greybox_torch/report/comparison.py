@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure, FigureBase
 
 from greybox_torch.data import Channel, Recording
 from greybox_torch.estimate.divergence import beyond_reach
+from greybox_torch.name_lists import listed
 from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, since_start, with_unit
 from greybox_torch.report.time_axis import time_unit
 
@@ -22,6 +24,12 @@ _DETAIL = 0.05
 
 _MOST_ABREAST = 4
 """Entries of the legend that stand in one row."""
+
+_MARGIN = 0.05
+"""Share of its height that an axis has more, each way, than the curves that it is kept to."""
+
+_TITLE = {0: 95, 1: 55}
+"""Characters that fit in one line above each column."""
 
 
 def plot_comparison(
@@ -58,29 +66,35 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
     grid = figure.add_gridspec(2 * len(outputs), 2, width_ratios=(1.6, 1), height_ratios=(1.4, 1) * len(outputs))
     for k, output in enumerate(outputs):
         measured = recording.signals[output.name]
-        runs = {legend[name]: _followed(measured, values[:, k]) for name, values in simulated.items()}
+        runs = {name: _followed(measured, values[:, k]) for name, values in simulated.items()}
         lost = any(np.isnan(values).any() for values in runs.values())
-        label, last = list(runs.items())[-1]
+        within = _within(measured, runs)
+        name, last = list(runs.items())[-1]
         worst = _worst(measured, last)
         where = (
             "the simulation runs away"
             if np.isnan(last).any()
-            else f"the error{f' of {label}' * (len(runs) > 1)} is largest"
+            else f"the error{f' of {name}' * (len(runs) > 1)} is largest"
         )
-        for column, part in enumerate((slice(None), worst)):
+        out = [name for name in runs if name not in within]
+        leaves = f"{listed(out)} {'leaves' if len(out) == 1 else 'leave'} the axes" if within and out else ""
+        for column, (part, title) in enumerate(((slice(None), leaves), (worst, f"where {where}"))):
             above = figure.add_subplot(grid[2 * k, column])
             below = figure.add_subplot(grid[2 * k + 1, column], sharex=above)
-            pieces = {label: values[part] for label, values in runs.items()}
+            pieces = {legend[name]: values[part] for name, values in runs.items()}
             _plot_signals(above, time[part], measured[part], pieces)
             _plot_errors(below, time[part], measured[part], pieces)
             below.set_xlabel(unit.label)
-            if lost:
-                _keep_to(measured, above, below)
+            if within and out:
+                kept = [values[part] for values in within.values()]
+                _keep_to(above, [measured[part], *kept])
+                _keep_to(below, [measured[part] - values for values in kept])
+            elif lost:
+                _keep_to_measured(measured, above, below)
             if column == 0:
                 above.set_ylabel(with_unit(output.name, output.unit))
                 below.set_ylabel(with_unit("error", output.unit))
-            else:
-                above.set_title(f"where {where}", fontsize=9)
+            above.set_title(textwrap.fill(title, _TITLE[column]), fontsize=9)
     entries = above.get_legend_handles_labels()
     columns = len(entries[0]) if len(entries[0]) <= _MOST_ABREAST else 3
     figure.legend(*entries, loc="outside lower center", ncols=columns)
@@ -106,7 +120,21 @@ def _followed(measured: np.ndarray, simulated: np.ndarray) -> np.ndarray:
     return np.where(beyond_reach(measured, simulated), np.nan, simulated)
 
 
-def _keep_to(measured: np.ndarray, above: Axes, below: Axes) -> None:
+def _within(measured: np.ndarray, runs: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """The simulations that stay as near to the measured signal as that is wide: the others are lines beside one far off."""
+    span = float(np.ptp(measured[np.isfinite(measured)])) if np.isfinite(measured).any() else 0.0
+    near = {name: values for name, values in runs.items() if not np.isnan(values).any()}
+    return {name: values for name, values in near.items() if np.nanmax(np.abs(measured - values), initial=0.0) <= span}
+
+
+def _keep_to(axes: Axes, curves: Sequence[np.ndarray]) -> None:
+    """Axes of the size of these curves, which others leave."""
+    values = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
+    if values.size and (span := float(np.ptp(values))) > 0.0:
+        axes.set_ylim(float(values.min()) - _MARGIN * span, float(values.max()) + _MARGIN * span)
+
+
+def _keep_to_measured(measured: np.ndarray, above: Axes, below: Axes) -> None:
     """Axes of the size of the measured signal, which curves that run away leave."""
     low, high = float(np.nanmin(measured)), float(np.nanmax(measured))
     span = (high - low) or 1.0

@@ -38,8 +38,11 @@ from tests.api.motor import Motor
         (lambda m, d: gt.fleet("machines", "results", progress=3), "progress: found 3, expected a function"),
         (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.fit("a.py:A", d), 'model: found an object of type str, expected a model, as load_model("a.py:A") gives one, or'),
-        (lambda m, d: gt.simulate(m, "card.toml"), "data: found an object of type str, expected a DataSet"),
-        (lambda m, d: gt.inspect("card.toml"), "data: found an object of type str, expected a DataSet, as load_dataset()"),
+        (lambda m, d: gt.simulate(m, [d]), "data: found an object of type list, expected a DataSet, as load_dataset()"),
+        (lambda m, d: gt.inspect("card.toml"), "card.toml: no such file"),
+        (lambda m, d: gt.fit(d, m), "model: found an object of type DataSet, expected a model first, and the data second"),
+        (lambda m, d: gt.compare({"m": m}, d), "models: found an object of type DataSet, expected the data first: compare("),
+        (lambda m, d: gt.evaluate(m, d), "data: found an object of type Motor, expected a DataSet first, as in evaluate("),
         (lambda m, d: gt.inspect(d, Motor), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.simulate(m, d, device="tpu"), "device: found 'tpu', expected \"cpu\", \"cuda\" or \"cuda:N\""),
         (lambda m, d: gt.simulate(m, d, precision="half"), "precision: found 'half', expected \"double\" or \"single\""),
@@ -53,6 +56,20 @@ def test_arguments_at_fault(data: gt.DataSet, call: Callable[[Any, Any], Any], m
     with pytest.raises(gt.UserError) as caught:
         call(Motor(), data)
     assert str(caught.value).startswith(message)
+
+
+def test_data_may_be_given_by_their_card(folder: Path) -> None:
+    """Seen: ``gt.diagnose(model, "dataset.toml")`` refused, where `card` takes a model by its name."""
+    card = folder / "dataset.toml"
+    assert gt.simulate(Motor(), str(card)).scores == gt.simulate(Motor(), gt.load_dataset(card)).scores
+    assert gt.residuals(Motor(), card).run.data.name == "Motor on the bench"
+    results = [
+        gt.compare(card, {"start": Motor()}),
+        *gt.fit_many(Motor(), [card]),
+        gt.inspect(card),
+        gt.fit(Motor(), card),
+    ]
+    assert {one.data.name for one in results if not isinstance(one, Exception)} == {"Motor on the bench"}
 
 
 def test_numbers_of_numpy_are_numbers() -> None:

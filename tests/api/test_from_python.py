@@ -73,6 +73,11 @@ def test_the_contract(folder: Path, data: gt.DataSet) -> None:
     assert found.sentence == found.verdict.sentence and found.mismatch
     half_width = found.parameters["actuator.actuator_deadzone.half_width"]
     assert half_width.value == pytest.approx(0.4, rel=0.02) and 0 < (half_width.std or 0) < 0.01
+    inertia = next(one for one in found.verdict.parameters if one.name == "J")
+    assert inertia.augmented is not None and (found.parameters["J"].std, found.parameters["k"].std) == (
+        inertia.augmented[1],
+        None,
+    )
     table = {row["parameter"]: row["value"] for row in found.effect_rows if row["mechanism"] == effect.mechanism}
     assert table["half_width"] == half_width.value and len(table) == len(effect.parameters)
     assert found.model.values() == {name: entry.value for name, entry in found.parameters.items()}

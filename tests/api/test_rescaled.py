@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -42,6 +44,16 @@ def test_a_diagnosis_asks_it_too() -> None:
     """Seen: a pressure in bar read a hundred times too small, told as a lag of its sensor (0.85)."""
     question = gt.diagnose(Plate(), recordings(T2=0.01), time_limit=2).verdict.question
     assert question is not None and "the scale of T2 right? With values 100 times as large" in question
+
+
+@pytest.mark.parametrize(("unit", "factor", "zero"), [("K", 1.0, 273.15), ("degF", 1.8, 32.0)])
+def test_a_temperature_in_another_unit_is_asked_for(unit: str, factor: float, zero: float) -> None:
+    """Seen: a floor of 287 K read as degC with a scale of 1, a fit of 30 %, and not a word of 273."""
+    data = recordings()
+    runs = [replace(r, signals={**r.signals, "T2": factor * r.signals["T2"] + zero}) for r in data.recordings]
+    question = gt.fit(Plate(), gt.DataSet(runs, channels=data.channels)).question
+    assert question is not None
+    assert question.startswith(f"Is T2 recorded in {unit}? Converted to degC, a short refit reaches a mean fit of 9")
 
 
 def test_only_what_the_start_values_bear_out_is_refitted(monkeypatch: pytest.MonkeyPatch) -> None:

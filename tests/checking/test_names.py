@@ -70,4 +70,14 @@ def test_a_name_that_is_no_attribute_is_read_by_its_text(machines: Path, tmp_pat
     (tmp_path / "motor.py").write_text(text.replace("inputs = [", inputs))
     found = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
     (one,) = [f for f in found if f.found.startswith("input 'su n' moves no output")]
-    assert one.write == 'u["su n"] in derivative() or output()'
+    assert one.write.startswith('u["su n"] in derivative() or output()')
+
+
+def test_an_input_that_the_equations_leave_out_may_stay_for_a_diagnosis(machines: Path, tmp_path: Path) -> None:
+    """Seen: "write: u.wind" of the wind that the diagnosis then found to cool a greenhouse, as it was recorded and not used."""
+    text = (machines / "motor.py").read_text()
+    (tmp_path / "motor.py").write_text(text.replace("inputs = [", 'inputs = [Input("wind", "m/s"), '))
+    (found,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    assert found.write == (
+        "u.wind in derivative() or output(); or nothing, if diagnose or train is to find what it does at rotor"
+    )

@@ -12,7 +12,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.design_files import CARD
-from greybox_torch.api.design_notes import _beginning
+from greybox_torch.api.design_notes import _beginning, design_notes
 from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
 from greybox_torch.experiment_design.approach import begun_at, begun_there
@@ -61,6 +61,22 @@ def test_limits_that_are_not_given_are_told_with_what_was_taken(undecided, tmp_p
     assert any(n.startswith("Not all limits are") and "for voltage" not in n for n in some.notes)
     every = gt.design(undecided, precision="J", seconds=0.5)
     assert not any("limits are given" in note for note in every.notes)
+
+
+def test_changes_that_nothing_limits_are_told(undecided) -> None:
+    """Seen: a set point of 740 rad/s for a motor's angle, and no word of the rate that was not given."""
+    slow = np.linspace(-3.0, 3.0, len(undecided.data.recordings[0].time))
+    runs = [replace(r, signals={**r.signals, "voltage": slow[: len(r.time)]}) for r in undecided.data.recordings]
+    data = replace(undecided.data, recordings=tuple(runs))
+
+    def told(data: gt.DataSet, **rate: float) -> list[str]:
+        limits = {"voltage": {"lower": -3.0, "upper": 3.0, **rate}}
+        found = gt.design(undecided, precision="J", seconds=0.5, limits=limits)
+        return [note for note in design_notes(replace(found, data=data)) if note.startswith("Nothing limits how fast")]
+
+    (note,) = told(data)
+    assert "voltage changes: here by" in note and "voltage = { rate = … }" in note
+    assert not told(data, rate=10.0) and not told(undecided.data), "recorded in steps of that size"
 
 
 def test_a_start_that_is_asked_for(undecided) -> None:

@@ -16,6 +16,7 @@ import greybox_torch as gt
 from greybox_torch.api.hypotheses import hypothesis_files, read_hypotheses
 from greybox_torch.checkpoint import checkpoint_files
 from greybox_torch.cli import app
+from greybox_torch.data import Channel
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.experiment_design.limits import EVERY_INPUT
 from greybox_torch.files import write_all
@@ -89,7 +90,11 @@ def test_precision(undecided) -> None:
     assert long.sentence.startswith("3600 s of ")  # seen: 3.6e+03 s
     ranges = {**found.limits.inputs, "room": found.limits.inputs["voltage"]}
     inputs = {**found.inputs, "room": found.inputs["voltage"]}
-    two = replace(found, limits=replace(found.limits, inputs=ranges), inputs=inputs)
+    runs = [replace(r, signals={**r.signals, "room": r.signals["voltage"]}) for r in found.data.recordings]
+    data = replace(
+        found.data, recordings=tuple(runs), channels={**found.data.channels, "room": Channel("room", "degC")}
+    )
+    two = replace(found, data=data, limits=replace(found.limits, inputs=ranges), inputs=inputs)
     assert EVERY_INPUT in two.notes
     correlated = replace(found, memory=510.0)
     assert any("correlated over up to 510 samples, and so many count as one" in line for line in correlated.notes)
@@ -145,6 +150,8 @@ def test_what_a_folder_keeps_is_what_the_diagnosis_had(results: Path, undecided)
 def test_options_at_fault(results: Path, options: list[str], message: str) -> None:
     result = CliRunner().invoke(app, ["design", str(results), *options])
     assert result.exit_code == 2 and message in result.output
+    told = CliRunner().invoke(app, ["design", str(results), "--json", *options])
+    assert (told.exit_code, told.stdout) == (2, "") and message in told.stderr
     assert not (results / "design").exists()
 
 
@@ -158,6 +165,13 @@ def test_a_finding_that_is_decided_is_no_error(results: Path) -> None:
     result = CliRunner().invoke(app, ["design", str(results)])
     assert result.exit_code == 4 and "nothing to design: of the named hypotheses" in result.stderr
     assert "error" not in result.stderr and "another reason: a free curve does better in its place" in result.stderr
+    told = CliRunner().invoke(app, ["design", str(results), "--json"])
+    assert told.exit_code == 4 and told.stdout, "seen: rc 4, and nothing for a script to read"
+    for_scripts = json.loads(told.stdout)
+    assert for_scripts["schema"] == "greybox-design/1" and for_scripts["nothing_to_do"].startswith(
+        "nothing to design: of"
+    )
+    assert for_scripts["nothing_to_do"] in told.stderr.replace("\n", " ") and result.stdout == ""
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import greybox_torch.fleets.fingerprint as fingerprints
+from greybox_torch.api.fleet_machine import diagnose_machine, without_a_diagnosis
 from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
 from greybox_torch.fleets.fingerprint import fingerprint
@@ -56,6 +57,16 @@ def test_a_file_that_is_not_there(job: Job) -> None:
     (job.card.parent / "steps.csv").unlink()
     with pytest.raises(UserError, match=r"steps\.csv: no such file"):
         of(job)
+
+
+def test_a_recording_that_is_not_there_is_told_as_a_diagnosis_tells_it(job: Job) -> None:
+    """Seen: "steps.csv: no such file", without the card, the experiment, and the file that is meant."""
+    (job.card.parent / "steps.csv").rename(job.card.parent / "step.csv")
+    row, kept = diagnose_machine(job)
+    again = without_a_diagnosis(job)
+    assert not kept and again is not None
+    for told in (row.message, again[0].message):
+        assert all(part in told for part in ("dataset.toml", '"Steps"', 'did you mean "step.csv"'))
 
 
 def results(job: Job) -> dict[Path, str | bytes]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, Recording
 from greybox_torch.report.comparison import plot_comparison
@@ -40,3 +41,32 @@ def test_where_a_simulation_runs_away_the_detail_is_its_last_stretch(growth: flo
     left = float(TIME[np.argmax(np.abs(away - MEASURED.mean()) > 100.0 * np.ptp(MEASURED))])
     told, begin, end = detail(start=away)
     assert told == "where the simulation runs away" and begin < left < end
+
+
+def drawn(**simulated: np.ndarray) -> Figure:
+    run = Recording.from_arrays("Run", {"speed": MEASURED}, sample_time=0.01, role="validation")
+    outputs = {name: values[:, None] for name, values in simulated.items()}
+    legend = {name: f"{name} (12.3 %, 45.6 %)" for name in outputs}
+    return plot_comparison(run, [Channel("speed", "rad/s")], outputs, legend)
+
+
+def test_a_model_that_is_far_off_leaves_the_axes_of_the_others() -> None:
+    """Seen: a start model at -1218 % set all scales, so that the two models of interest and their errors were lines."""
+    near = {"fit": bump(2.0), "diagnosed": MEASURED + 0.01 * np.cos(TIME)}
+    figure = drawn(start=MEASURED - 3.0 * TIME, **near)
+    assert all(high - low < 3.5 for low, high in (axes.get_ylim() for axes in figure.axes))
+    assert figure.axes[0].get_title() == "start leaves the axes"
+    plain = drawn(**near)
+    assert not plain.axes[0].get_title() and plain.axes[1].get_ylim()[0] < -1.0
+    low, _ = drawn(start=MEASURED - 3.0 * TIME).axes[0].get_ylim()
+    assert low < -25.0, "the only one is drawn altogether"
+
+
+def test_titles_stand_within_the_figure() -> None:
+    """Seen: "where the error of out_diag/model (53.9 %, 53.9 %) is larges"."""
+    name = "results of the second week/with the new sensor/line 3/model"
+    figure = drawn(**{"start": bump(2.0), name: bump(7.0)})
+    figure.draw_without_rendering()
+    titles = [axes.title.get_window_extent() for axes in figure.axes if axes.get_title()]
+    assert titles and all(box.x1 <= figure.bbox.x1 and box.x0 >= 0.0 for box in titles)
+    assert "%" not in " ".join(axes.get_title() for axes in figure.axes)
