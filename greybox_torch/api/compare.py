@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.api.simulate import SimulationResult
+from greybox_torch.api.start_states import Fits, begun_with, better_before, own_fits
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.evaluation import evaluated
@@ -37,11 +38,22 @@ class ComparisonResult(Result):
 
     data: DataSet
     runs: Runs
+    own: Mapping[str, Fits] = field(default_factory=dict)
+    """Of models that were estimated from these recordings, their fits with the start states of that estimate."""
 
     @property
     def scores(self) -> list[dict[str, Any]]:
         """A row for every output of every experiment simulated by every model: fit in %, root mean square error in the output's unit."""
         return score_rows(self.data, self._scores)
+
+    @property
+    def warnings(self) -> list[str]:
+        """Of every model whose simulation overflows or diverges where that is, and what avoids it; and models that follow an experiment far
+        better with the start states of their estimate.
+        """
+        overflows = [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
+        diverging = [f"{name}: {line}" for name, run in self.runs.items() for line in run.diverging]
+        return [*overflows, *diverging, *better_before(self.runs, self.own)]
 
     def __getitem__(self, model: str) -> SimulationResult:
         if model not in self.runs:
@@ -59,12 +71,14 @@ class ComparisonResult(Result):
 
     def content(self, folder: Path) -> dict[str, Any]:
         figures = [str(folder / f"{stem}.png") for stem in file_stems(self.data, "comparison")]
-        return {**free_runs_json(self.data, self.runs), "figures": figures}
+        return {**free_runs_json(self.data, self.runs), "warnings": self.warnings, "figures": figures}
 
     def show(self, console: Console) -> None:
         console.print(Text(self.data.name, style="bold"))
         print_scores(console, self.data, self._scores)
-        for line in self._overflows():
+        for line in begun_with(self.runs):
+            console.print(Text(line), soft_wrap=True)
+        for line in self.warnings:
             console.print(Text(line, style="yellow"), soft_wrap=True)
         for name, run in self.runs.items():
             print_substeps(console, run.substeps, name)
@@ -81,18 +95,13 @@ class ComparisonResult(Result):
         return notebook.page(
             self.data.name,
             notebook.table(*score_table(self.data, self._scores)),
-            *(notebook.sentence(line) for line in self._overflows()),
+            *(notebook.sentence(line) for line in (*begun_with(self.runs), *self.warnings)),
             notebook.picture(self.plot(), "outputs over time, measured and simulated by each model"),
         )
 
     @property
     def _scores(self) -> dict[str, Any]:
         return {name: run.comparison.scores for name, run in self.runs.items()}
-
-    def _overflows(self) -> list[str]:
-        """Of every model whose simulation overflows or diverges where that is, and what avoids it."""
-        overflows = [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
-        return [*overflows, *(f"{name}: {line}" for name, run in self.runs.items() for line in run.diverging)]
 
 
 @names_checked
@@ -136,4 +145,4 @@ def compare(
         else:
             model, its_data = (load(given), data) if own is None else load_beside(given, own, data)
         runs[name] = evaluated(its_data, model, device=device, precision=precision)
-    return ComparisonResult(data, runs)
+    return ComparisonResult(data, runs, {name: own_fits(given, data) for name, given in models.items()})

@@ -38,8 +38,9 @@ _SLOW = (
 )
 _NOT_LINEAR = (
     "what is left repeats from sample to sample, and past inputs do not explain it linearly: look at it over time for what is not "
-    "recorded, such as a load, or for an effect that follows the motion, such as friction (`greybox diagnose` looks for the latter)"
+    "recorded, such as a load, or for an effect that follows the motion, such as friction"
 )
+_DIAGNOSE = " (`greybox diagnose` looks for the latter)"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,7 +111,7 @@ class ResidualResult(Result):
 
     @property
     def _notes(self) -> tuple[str, ...]:
-        return _EXPLANATION, read(self.tests)
+        return _EXPLANATION, read(self.tests, diagnosed=bool(self.run.problem.model.effects_told()))
 
     @property
     def _title(self) -> str:
@@ -151,8 +152,12 @@ def residuals(
     return ResidualResult(simulated.run, simulated.name)
 
 
-def read(tests: Sequence[Residuals]) -> str:
-    """What the tests of all rows show together, and what that means."""
+def read(tests: Sequence[Residuals], *, diagnosed: bool = False) -> str:
+    """What the tests of all rows show together, and what that means.
+
+    Args:
+        diagnosed: whether the model has effects that a diagnosis or a training has attached.
+    """
     coloured = sum(not test.whiteness.within_chance for test in tests)
     driven = [[n for n, found in test.inputs.items() if not found.within_chance] for test in tests]
     names = listed(list(dict.fromkeys(name for row in driven for name in row)))
@@ -173,7 +178,7 @@ def read(tests: Sequence[Residuals]) -> str:
         return f"{rows}{inputs}: nothing is left that these tests show."
     if not bounds:
         return f"{rows}: what is left repeats from sample to sample, so that a better model can remove part of it."
-    return f"{rows}{inputs}: {_NOT_LINEAR}."
+    return f"{rows}{inputs}: {_NOT_LINEAR}{'' if diagnosed else _DIAGNOSE}."
 
 
 def _row_json(test: Residuals, rmse: float) -> dict[str, Any]:

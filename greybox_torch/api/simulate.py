@@ -19,6 +19,7 @@ from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json
 from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
+from greybox_torch.api.start_states import begun_with
 from greybox_torch.data import DataSet
 from greybox_torch.data.steps import steps_of
 from greybox_torch.errors import NumericalError
@@ -124,6 +125,8 @@ class SimulationResult(Result):
         )
         console.print(Text(f"{self._title} {told}", style="bold"))
         print_scores(console, self.data, {self.name: self.run.comparison.scores})
+        for line in begun_with({self.name: self.run}):
+            console.print(Text(line), soft_wrap=True)
         print_substeps(console, self.run.substeps)
         for found in self.warnings:
             console.print(Text(f"warning: {found}.", style="yellow"), soft_wrap=True)
@@ -139,7 +142,8 @@ class SimulationResult(Result):
 
     def _repr_html_(self) -> str:
         scores = {self.name: self.run.comparison.scores}
-        told = (notebook.sentence(f"warning: {found}.") for found in self.warnings)
+        begun = begun_with({self.name: self.run})
+        told = map(notebook.sentence, (*begun, *(f"warning: {found}." for found in self.warnings)))
         shown = notebook.picture(self.plot(), "simulated and measured outputs over time")
         return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), *told, shown)
 

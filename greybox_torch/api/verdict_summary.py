@@ -10,6 +10,7 @@ from rich.text import Text
 
 from greybox_torch.api.scores import print_scores
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.begun import begun
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.equation_lines import in_lines
 from greybox_torch.diagnosis.one_of import OneOf, spoken_at, with_shares
@@ -55,7 +56,7 @@ def print_verdict(console: Console, data: DataSet, title: str, verdict: Verdict)
         print_table(console, columns, rows)
     console.print()
     print_scores(console, data, verdict_scores(verdict))
-    for line in which_refit(verdict):
+    for line in (*which_refit(verdict), *filter(None, [begun(verdict)])):
         console.print(Text(line), soft_wrap=True)
     console.print(Text(f"{verdict.seconds:.1f} s, seed {verdict.seed}"))
 

@@ -59,11 +59,19 @@ class Dimension:
     def to_the(self, power: Fraction) -> Dimension:
         return NONE.times(self, power)
 
+    @property
+    def has_name(self) -> bool:
+        """Whether it is told by a usual unit, or is one base unit in some power, or a plain number."""
+        return len(self.powers) < 2 or self._named is not None
+
+    @property
+    def _named(self) -> str | None:
+        return next((unit for unit in _NAMED if dimension_of(unit) == self), None)
+
     def __str__(self) -> str:
         """The dimension as a unit of its own."""
-        for unit in _NAMED:
-            if dimension_of(unit) == self:
-                return unit
+        if self._named is not None:
+            return self._named
         above = " ".join(_term(name, power) for name, power in self.powers if power > 0)
         below = " ".join(_term(name, -power) for name, power in self.powers if power < 0)
         return (above or "1") + (f"/({below})" if " " in below else f"/{below}" if below else "")

@@ -16,6 +16,9 @@ from greybox_torch.codegen.expression import BOOLEAN, COMPARISONS, Graph
 Misfit = Callable[[int, str], object]
 """Is told a node and what does not fit there."""
 
+InUnits = Callable[[int, Dimension], str]
+"""How the dimension of a node is written."""
+
 _OF_NUMBERS = {
     "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "expm1", "log", "log1p", "erf",
 }  # fmt: skip
@@ -33,6 +36,7 @@ def dimensions(
     leaves: Mapping[int, Dimension | None],
     text: Callable[[int], str],
     misfit: Misfit,
+    in_units: InUnits = lambda _, dimension: str(dimension),
 ) -> Known:
     """The dimensions of all nodes that ``roots`` need; ``misfit`` is called once for each place, whose dimension then is unknown."""
     known: Known = {}
@@ -43,11 +47,13 @@ def dimensions(
         elif node.operation == "constant":
             known[index] = NONE if _is_plain(node.value) else None
         else:
-            known[index] = _combined(graph, index, known, text, misfit)
+            known[index] = _combined(graph, index, known, text, misfit, in_units)
     return known
 
 
-def _combined(graph: Graph, index: int, known: Known, text: Callable[[int], str], misfit: Misfit) -> Dimension | None:
+def _combined(
+    graph: Graph, index: int, known: Known, text: Callable[[int], str], misfit: Misfit, in_units: InUnits
+) -> Dimension | None:
     node = graph.nodes[index]
     operation, arguments = node.operation, node.arguments
     inner = [known[a] for a in arguments]
@@ -62,20 +68,27 @@ def _combined(graph: Graph, index: int, known: Known, text: Callable[[int], str]
     if operation == "pow":
         return _power(graph, arguments, inner)
     if operation in _OF_NUMBERS:
-        if inner[0] not in (None, NONE):
-            misfit(index, f"takes {operation} of `{text(arguments[0])}`, which is in {inner[0]} and not a plain number")
+        if inner[0] is not None and inner[0] != NONE:
+            unit = in_units(arguments[0], inner[0])
+            misfit(index, f"takes {operation} of `{text(arguments[0])}`, which is in {unit} and not a plain number")
         return NONE
     if operation == "sign":
         return NONE
     if operation in _ALIKE or operation == "where":
         pair = arguments[1:] if operation == "where" else arguments
-        same = _alike(graph, index, pair, known, text, misfit)
+        same = _alike(graph, index, pair, known, text, misfit, in_units)
         return NONE if operation in BOOLEAN or operation == "atan2" else same
     return NONE if operation in BOOLEAN else None
 
 
 def _alike(
-    graph: Graph, index: int, pair: tuple[int, ...], known: Known, text: Callable[[int], str], misfit: Misfit
+    graph: Graph,
+    index: int,
+    pair: tuple[int, ...],
+    known: Known,
+    text: Callable[[int], str],
+    misfit: Misfit,
+    in_units: InUnits,
 ) -> Dimension | None:
     """The dimension that two operands have in common; a number fits any."""
     held = [a for a in pair if graph.value_of(a) is None]
@@ -86,7 +99,8 @@ def _alike(
         return one if other is None else other
     if one != other:
         doing = _ALIKE.get(graph.nodes[index].operation, "chooses between")
-        misfit(index, f"{doing} `{text(held[0])}`, in {one}, and `{text(held[1])}`, in {other}")
+        first, second = (f"`{text(a)}`, in {in_units(a, of)}" for a, of in zip(held, (one, other), strict=True))
+        misfit(index, f"{doing} {first}, and {second}")
         return None
     return one
 

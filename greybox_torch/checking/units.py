@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of, known_dimension
 from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
+from greybox_torch.checking.unit_as_declared import as_declared
 from greybox_torch.checking.unit_walk import Known, dimensions
 from greybox_torch.data.units import factor_in
 from greybox_torch.model import Body, Coupling, GreyBoxModel
@@ -52,13 +54,14 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
         graph.leaf(kind, i): known_dimension(q.unit) for kind, of in _declared(model).items() for i, q in enumerate(of)
     }
     text = lambda node: shown(graph, node, names)  # noqa: E731
-    signals = dimensions(graph, traced.signals.values(), leaves, text, found.setdefault)
+    in_units = partial(as_declared, graph, lambda kind, i: units[names.of(kind, i)])
+    signals = dimensions(graph, traced.signals.values(), leaves, text, found.setdefault, in_units)
     of_signal = {key: signals[node] for key, node in traced.signals.items()}
     for i, port in enumerate(model.ports):
         force = leaves[graph.leaf("f", i)] = _force(port, of_signal)
         units[names.of("f", i)] = "" if force is None else str(force)
     roots = [*traced.rates.values(), *traced.outputs.values()]
-    known = dimensions(graph, roots, leaves, text, found.setdefault)
+    known = dimensions(graph, roots, leaves, text, found.setdefault, in_units)
     for node, what in found.items():
         write = (
             _per_unit_of(traced, node, known, names) or f"{REMEDY}; the units are {_used(traced, node, names, units)}"

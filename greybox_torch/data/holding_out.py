@@ -11,6 +11,7 @@ import numpy as np
 from greybox_torch.data.asked_for import left_out
 from greybox_torch.data.recording import Recording
 from greybox_torch.errors import UserError
+from greybox_torch.name_lists import listed
 
 HELD_OUT = " (held out)"
 """What the name of an experiment's last quarter ends in."""
@@ -62,6 +63,7 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
                 advice = f"; {left_out(channel)}" if others and path is not None else ""
                 # rows of the first file, which need not be the one that has the column
                 of = "" if recording.source is None else f" of {recording.source}"
+                of += f" with {listed([file.name for file in recording.further])}" if recording.further else ""
                 raise UserError(
                     f'{_of(recording, path)}, channel "{channel}": all {len(values)} samples are '
                     f"missing (NaN), rows {list(recording.rows)}{of}; expected numbers{advice}"

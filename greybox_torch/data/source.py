@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.checks import check_finite, check_same_length, check_time
+from greybox_torch.data.checks import DAY, check_finite, check_same_length, check_time
 from greybox_torch.data.gaps import in_gaps, lost_samples
 from greybox_torch.data.in_no_file import in_nested_file, in_no_file
 from greybox_torch.data.joined_rows import joined_rows
@@ -111,6 +112,8 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         if table is tables[0]:
             held = own
         else:
+            if len(own) > 1:
+                _check_in_common(tables[0], table, time)
             unknown = in_gaps(held[time], own[time])
             across = ", and missing across its gaps" if unknown.any() else ""
             across = f"{_also_across_lost(table, own[time])}{across}"
@@ -126,6 +129,25 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
     if lacking:
         raise in_no_file(files, lacking[0])
     return Source(tables[:1], held, tuple(notes), tables[1:], between=between)
+
+
+def _check_in_common(first: Table, other: Table, time: str) -> None:
+    """Raises UserError where no sample of the first file lies within the time of another: all that is taken from that would be missing."""
+    stamps, own = first.columns[time], other.columns[time]
+    if len(stamps) and len(own) and not ((stamps >= own[0]) & (stamps <= own[-1])).any():
+        raise UserError(
+            f'{other.path}, column "{time}": {_span(other, time)}, and {first.path.name} {_span(first, time)}: they have no time in '
+            'common; expected files of one run for join = "time"'
+        )
+
+
+def _span(table: Table, time: str) -> str:
+    """From when to when a file goes, as dates where it has dates."""
+    ends = table.columns[time][[0, -1]]
+    if time in table.stamps and ends[0] >= DAY:
+        begin, end = (f"{datetime.fromtimestamp(float(s), UTC):%Y-%m-%d %H:%M:%S}" for s in ends)
+        return f"is from {begin} to {end}"
+    return f"is from {ends[0]:.10g} to {ends[1]:.10g}"
 
 
 def _also_across_lost(table: Table, stamps: NDArray[np.float64]) -> str:

@@ -15,7 +15,7 @@ from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_furth
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
-from greybox_torch.drafting.runs import Run, apart, names_of, runs_of
+from greybox_torch.drafting.runs import Run, apart, last_complete, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
@@ -139,20 +139,23 @@ def _faults(file: Recorded) -> list[str]:
 
 def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
     lines: list[str] = []
-    names = names_of(runs)
+    names, last = names_of(runs), last_complete(runs)
+    open_ones = {draft.name for draft in runs[0].table.channels if draft.column is None}
     for k, run in enumerate(runs):
-        own, guessed = own_columns(run, runs[0]), guessed_units(run, runs[0])
-        alone, last, samples = len(runs) == 1, k == len(runs) - 1, run.whole.samples
+        every, guessed = own_columns(run, runs[0]), guessed_units(run, runs[0])
+        own = {name: entry for name, entry in every.items() if name not in open_ones}
+        later = {name: entry for name, entry in every.items() if name in open_ones}
+        alone, samples = len(runs) == 1, run.whole.samples
         if alone and samples >= FEW:
             cut = 3 * samples // 4
             for name, role, rows in (
                 ("first part", "estimation", (0, cut)),
                 ("last part", "validation", (cut, samples)),
             ):
-                lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, guessed, rows)
+                lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, later, guessed, rows)
             continue
-        role = "validation" if last and not alone else "estimation"
-        lines += _experiment(names[k], run, role, folder, own, guessed, None)
+        role = "validation" if k == last and not alone else "estimation"
+        lines += _experiment(names[k], run, role, folder, own, later, guessed, None)
     return lines
 
 
@@ -162,6 +165,7 @@ def _experiment(
     role: str,
     folder: Path,
     columns: dict[str, dict[str, str]],
+    later: dict[str, dict[str, str]],
     guessed: str,
     rows: tuple[int, int] | None,
 ) -> list[str]:
@@ -177,6 +181,7 @@ def _experiment(
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"# {guessed}; please check"] if guessed else []),
         *([f"columns = {{ {in_toml(columns)} }}"] if columns else []),
+        *([f"# and, once [channels] has them: {in_toml(later)}"] if later else []),
         "",
     ]
 

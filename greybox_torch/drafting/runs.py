@@ -37,6 +37,11 @@ class Run:
         return {draft.name for draft in self.table.channels if draft.column is not None}
 
     @property
+    def complete(self) -> bool:
+        """Whether every channel has a column."""
+        return len(self.channels) == len(self.table.channels)
+
+    @property
     def signals(self) -> frozenset[str]:
         """The columns but for the time stamps."""
         return frozenset(self.whole.columns) - {self.clock.column or ""}
@@ -47,28 +52,53 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
     first = drafted(files[0], clocks[0], model)
     further = [drafted(*other, model, first) for other in zip(files[1:], clocks[1:], strict=True)]
     alone = [Run((f,), f, c, table) for f, c, table in zip(files, clocks, [first, *further], strict=True)]
-    loggers = _by_logger(alone, model)
-    if len(loggers) < 2 or not _may_be_joined(loggers, model):
+    whole = [] if model is None else [run for run in alone if run.complete]
+    by_clock: dict[tuple[str | None, str], list[Run]] = {}
+    for run in (run for run in alone if run not in whole):
+        by_clock.setdefault((run.clock.column, run.clock.unit), []).append(run)
+    if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
         return tuple(alone)
+    made = [*whole, *(run for parts in by_clock.values() for run in _of_loggers(parts, model))]
+    return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
+
+
+def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
+    """The runs that files with time stamps of one kind make up, none of which has all channels of a model; the files as they are where
+    it does not show which belong together.
+    """
+    loggers = _by_logger(parts, model)
+    if len(loggers) < 2 or not _may_be_joined(loggers, model):
+        return parts
     first, *others = loggers
     partners = [_partners(first, other) for other in others]
-    if any(found is None for found in partners):
-        return tuple(alone)
-    together = [[run, *(found[k] for found in partners if found)] for k, run in enumerate(first)]
-    joined = tuple(_joined(of_one, model) for of_one in together)
-    return joined if model is None or _gains(together[0], joined[0]) else tuple(alone)
+    together = [(run, *found) for run, *found in zip(first, *partners, strict=True) if all(found)]
+    if not together or (model is None and len(together) < max(map(len, loggers))):
+        return parts
+    of_one = [[run for run in runs if run is not None] for runs in together]
+    joined = [_joined(runs, model) for runs in of_one]
+    if model is not None and not _gains(of_one[0], joined[0]):
+        return parts
+    used = {id(run) for runs in of_one for run in runs}
+    return [*joined, *(run for run in parts if id(run) not in used)]
 
 
 def apart(runs: Sequence[Run]) -> str:
     """What to do where files that were not joined have different channels of the model, of which none can be simulated; else ""."""
-    for run in runs[1:]:
-        if run.channels - runs[0].channels and len(run.channels) < len(run.table.channels):
-            names = [one.files[0].path.name for one in (runs[0], run)]
+    first, *others = [run for run in runs if len(run.signals) != len(run.table.channels)] or runs[:1]
+    for run in others:
+        if run.channels - first.channels or (run.clock.column is not None and not run.channels):
+            names = [one.files[0].path.name for one in (first, run)]
             return (
                 f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
                 f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in a column of one name and in one unit'
             )
     return ""
+
+
+def last_complete(runs: Sequence[Run]) -> int:
+    """The last run with as many channels as any: what results can be judged on."""
+    most = max(len(run.channels) for run in runs)
+    return max(k for k, run in enumerate(runs) if len(run.channels) == most)
 
 
 def names_of(runs: Sequence[Run]) -> list[str]:
@@ -99,14 +129,13 @@ def _by_logger(runs: Sequence[Run], model: GreyBoxModel | None) -> list[list[Run
 
 
 def _may_be_joined(loggers: Sequence[Sequence[Run]], model: GreyBoxModel | None) -> bool:
-    """Whether all have as many files, sound time stamps in a column of one name, in one unit, and columns that the others lack."""
+    """Whether all have sound time stamps in a column, and columns that the others lack."""
     if any(run.clock.broken for of_one in loggers for run in of_one):
         return False
-    clocks = {(run.clock.column, run.clock.unit) for of_one in loggers for run in of_one}
-    if len({len(of_one) for of_one in loggers}) > 1 or len(clocks) > 1 or next(iter(clocks))[0] is None:
+    if loggers[0][0].clock.column is None:
         return False
     pairs = list(combinations([of_one[0].signals for of_one in loggers], 2))
-    if model is None:  # then the columns are all that tells what is one signal
+    if model is None:
         return not any(one & other for one, other in pairs)
     return all(one - other and other - one for one, other in pairs)
 
@@ -121,13 +150,15 @@ def _gains(alone: Sequence[Run], joined: Run) -> bool:
     return len(joined.channels) > most or (apart and most < len(joined.table.channels))
 
 
-def _partners(runs: Sequence[Run], others: Sequence[Run]) -> list[Run] | None:
-    """For each run the one of another logger over the same time; where that leaves several, the one with the likest name. None where that
-    does not tell.
+def _partners(runs: Sequence[Run], others: Sequence[Run]) -> list[Run | None]:
+    """For each run the one of another logger over the same time; where that leaves several, the one with the likest name. None for a run
+    of which that does not tell; of two with the same partner, for the one that this is less like than the other.
     """
     found = [_partner(run, [other for other in others if _at_once(run, other)]) for run in runs]
-    partners = [other for other in found if other is not None]
-    return partners if len(set(map(id, partners))) == len(runs) else None
+    back = {
+        id(one): _partner(one, [run for run, f in zip(runs, found, strict=True) if f is one]) for one in found if one
+    }
+    return [one if one is not None and back[id(one)] is run else None for run, one in zip(runs, found, strict=True)]
 
 
 def _partner(run: Run, candidates: Sequence[Run]) -> Run | None:

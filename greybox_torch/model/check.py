@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ import torch
 from greybox_torch.errors import UserError, did_you_mean
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.missing_names import advice_for
-from greybox_torch.model.ports import Port
+from greybox_torch.model.ports import Port, value_of
 from greybox_torch.model.random_numbers import Draw, watched
 from greybox_torch.model.signals import Signals
 from greybox_torch.model.stacked import odd_one
@@ -51,6 +51,7 @@ def check_equations(model: GreyBoxModel) -> None:
     files = _files(model)
     with torch.no_grad():
         values = model.physical()
+        _check_functions_of_ports(model, values)
         for batch, level in zip(BATCHES, (0.0, 1.0), strict=True):
             x, u = _signals(model, batch, level)
             p = Signals("parameter", {name: value.expand(batch) for name, value in values.items()})
@@ -84,6 +85,29 @@ def _check_ports(model: GreyBoxModel) -> None:
     """The equations do not read what ports say of themselves; laws that are attached there do, long after."""
     for _, found, expected in unknown_signals(model):
         raise UserError(f"{found}; expected {expected}")
+
+
+def _check_functions_of_ports(model: GreyBoxModel, values: Mapping[str, torch.Tensor]) -> None:
+    """That the functions which ports have as signals can be called with the model's names."""
+    x, u = model.named_signals(*_signals(model, BATCHES[0], 1.0))
+    p = Signals("parameter", {name: value.expand(BATCHES[0]) for name, value in values.items()})
+    for port in model.ports:
+        for name, signal in port.signals.items():
+            try:
+                value_of(signal, x, u, p)
+            except Exception as error:
+                said = str(error) if isinstance(error, UserError) else f"raised {type(error).__name__}: {error}"
+                found = f"port '{port.name}', {name}: {said}; expected a function (x, u, p) of what the model declares"
+                raise EquationsError(found, _place_in(signal, error)) from None
+
+
+def _place_in(function: object, error: Exception) -> tuple[str, int | None] | None:
+    """The file of a function, and its last line on the way to the error."""
+    code = getattr(function, "__code__", None)
+    if code is None:
+        return None
+    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == code.co_filename]
+    return code.co_filename, frames[-1].lineno if frames else code.co_firstlineno
 
 
 def unknown_signals(model: GreyBoxModel | type[GreyBoxModel]) -> Iterator[tuple[Port, str, str]]:

@@ -137,3 +137,24 @@ def test_what_other_threads_draw_is_theirs(tmp_path: Path, machines: Path) -> No
     made = model_class(f"{tmp_path / 'motor.py'}:Motor")
     made.beside = Beside  # type: ignore[attr-defined]
     check_equations(made())
+
+
+def test_a_wrong_name_in_the_function_of_a_port_is_told_with_its_line(tmp_path: Path) -> None:
+    """Seen: no line, and a list of torch functions as what to write; `fit` went on, and a diagnosis ended there."""
+    lines = [
+        "from greybox_torch import *",
+        "class Rig(GreyBoxModel):",
+        '    states, inputs, outputs = [State("motor", "rad"), State("speed", "rad/s")], [Input("u", "N m")], [Output("motor", "rad")]',
+        '    ports = [Coupling("gear",',
+        "        deflection=lambda x, u, p: x.mtr / 80, rate=lambda x, u, p: x.speed)]",
+        "    def derivative(self, x, u, p, port):",
+        '        return {"motor": x.speed, "speed": u.u - x.motor - port.gear}',
+        "    def output(self, x, u, p):",
+        '        return {"motor": x.motor}',
+    ]
+    (tmp_path / "rig.py").write_text("\n".join(lines))
+    (error,) = [f for f in examine(model_class(f"{tmp_path / 'rig.py'}:Rig")).findings if f.level == "error"]
+    assert "port 'gear', deflection: the equations ask for the state 'mtr' (did you mean \"motor\"?)" in error.found
+    assert error.line == 5 and error.write == "a function (x, u, p) of what the model declares"
+    with pytest.raises(UserError, match=r"rig\.py, line 5: port 'gear', deflection"):
+        check_equations(load_model(f"{tmp_path / 'rig.py'}:Rig"))

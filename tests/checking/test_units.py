@@ -37,3 +37,15 @@ def test_the_force_at_a_body_has_a_unit_where_its_product_with_the_speed_is_powe
     (tmp_path / "hoop.py").write_text(HOOP.replace('"V/s"', f'"{rate}"').replace('"V"', f'"{unit}"'))
     found = examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings
     assert [f"`port.hoop`, in {force}" in finding.found for finding in found] == ([True] if force else [])
+
+
+@pytest.mark.parametrize(
+    ("unit", "told"),
+    [("N m/V", "N m A/V"), ("N m/(rad/s)", "A m^2 kg/s"), ("N m", "N m A"), ("V s/rad", "N m")],
+)
+def test_a_product_is_told_in_the_units_of_its_factors(tmp_path: Path, unit: str, told: str) -> None:
+    """Seen: `p.k_t * u.current`, in A^2 s."""
+    text = HOOP.replace('Input("u", "-")', 'Input("u", "A")').replace('"V/s"', f'"{unit}"').replace('"V"', '"rad/s"')
+    (tmp_path / "hoop.py").write_text(text)
+    found = " ".join(f.found for f in examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings)
+    assert f"`p.k * u.u`, in {told}" in found

@@ -109,3 +109,12 @@ def test_what_the_table_shows_is_said(colour: float, with_input: float | None, b
     inputs = {} if with_input is None else {"u": Correlation(lags, np.full(25, with_input), bound)}
     row: Any = SimpleNamespace(whiteness=Correlation(lags, np.full(25, colour), 0.06), inputs=inputs)
     assert read([row, row]).startswith(told)
+
+
+def test_a_model_with_effects_is_not_sent_to_the_diagnosis_that_it_comes_from() -> None:
+    row: Any = SimpleNamespace(
+        whiteness=Correlation(np.arange(1, 26), np.full(25, 0.99), 0.06),
+        inputs={"u": Correlation(np.arange(1, 26), np.full(25, 0.01), 0.3)},
+    )
+    assert read([row]).endswith("such as friction (`greybox diagnose` looks for the latter).")
+    assert read([row], diagnosed=True).endswith("such as friction.")

@@ -98,3 +98,57 @@ def test_nothing_is_to_be_inspected_before_the_card_is_filled_in(tmp_path: Path)
     done = CliRunner().invoke(app, ["card", str(tmp_path / "a.txt"), "--model", f"{tmp_path / 'rig.py'}:Rig"])
     assert done.exit_code == 0 and "Next:" not in done.stdout
     assert "Fill in what is said above; then greybox inspect" in done.stdout
+
+
+class Both(Rig):
+    inputs, outputs = [gt.Input("valve", "V")], [gt.Output("position", "m"), gt.Output("angle", "rad")]
+
+
+def third(path: Path, names: str = "valve,position,angle") -> None:
+    columns = np.column_stack([0.002 * np.arange(N), *(np.sin(np.arange(N) + k) for k in range(3))])
+    np.savetxt(path, columns, "%.6g", ",", header=f"t,{names}", comments="")
+
+
+def angles(path: Path) -> None:
+    path.write_text(
+        "\n".join(["Time\tangle", "msec\tmrad", *(f"{0.3 + 2.0 * k:.1f}\t{np.sin(k):.4f}" for k in range(N - 2))])
+    )
+
+
+@pytest.mark.parametrize("names", ["valve,position,angle", "a,b,angle"])
+@pytest.mark.parametrize("place", [0, 4])
+def test_files_of_another_kind_beside_them_do_not_undo_a_join(tmp_path: Path, names: str, place: int) -> None:
+    """Seen: with a complete file of the same machine in the list, each logger's file was an experiment, an encoder alone validation."""
+    files = []
+    for k in (1, 2):
+        first(tmp_path / f"run0{k}_DAQ1.txt")
+        angles(tmp_path / f"run0{k}_DAQ2.txt")
+        files += [tmp_path / f"run0{k}_DAQ1.txt", tmp_path / f"run0{k}_DAQ2.txt"]
+    third(tmp_path / "whole.csv", names)
+    files.insert(place, tmp_path / "whole.csv")
+    card = gt.card(files, Both())
+    joined = [[file.path.name for file in run.files] for run in card.draft.runs if len(run.files) > 1]
+    assert joined == [[f"run0{k}_DAQ1.txt", f"run0{k}_DAQ2.txt"] for k in (1, 2)]
+    assert not any("if they are of one run" in line for line in card.open)
+    if names.startswith("valve"):
+        card.save()
+        assert len(gt.load_dataset(tmp_path / "dataset.toml").recordings) == 3
+
+
+def test_a_file_without_its_partner_is_left_alone(tmp_path: Path) -> None:
+    for k in (1, 2):
+        first(tmp_path / f"run0{k}_DAQ1.txt")
+    angles(tmp_path / "run01_DAQ2.txt")
+    card = gt.card(sorted(tmp_path.glob("*.txt")), Both())
+    assert [(len(run.files)) for run in card.draft.runs] == [2, 1]
+    assert card.text.index('role = "validation"') < card.text.index('name = "run02_DAQ1"')  # which lacks the angle
+
+
+def test_columns_of_channels_that_are_to_be_filled_in_are_a_remark(tmp_path: Path) -> None:
+    """Seen: "columns: no channel is named link", a key that the draft itself had written."""
+    first(tmp_path / "a.txt")
+    third(tmp_path / "b.csv")
+    text = gt.card([tmp_path / "a.txt", tmp_path / "b.csv"], Both()).text
+    assert '# angle = { column = "…"' in text and '# and, once [channels] has them: angle = "angle"' in text
+    (written,) = [line for line in text.splitlines() if line.startswith("columns")]
+    assert "angle" not in written

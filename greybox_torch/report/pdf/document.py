@@ -109,6 +109,9 @@ def _scores(sheets: Sheets, told: Scores) -> None:
         sheets.text(group.title, 8.0, colour=QUIET)
         rows = [[(row.experiment, row.output), *((c.fit, c.error) for c in row.cells)] for row in group.rows]
         draw_table(sheets, (), rows, widths, bold_last=True)
+    if told.begun:
+        sheets.gap(3.0)
+        sheets.text(told.begun, 8.0, colour=QUIET)
     if told.held_out_by_default:
         sheets.gap(3.0)
         sheets.text(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from greybox_torch.diagnosis.begun import begun
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.report import text
@@ -49,6 +50,7 @@ class Scores:
     columns: tuple[tuple[str, str], ...]
     groups: tuple[Group, ...]
     held_out_by_default: bool
+    begun: str = ""
     template: str = "scores.html.j2"
 
     @classmethod
@@ -65,7 +67,7 @@ class Scores:
             )
             if rows:
                 groups.append(Group(title, rows))
-        return cls(tuple(_COLUMNS[m] for m in models), tuple(groups), about.held_out_by_default)
+        return cls(tuple(_COLUMNS[m] for m in models), tuple(groups), about.held_out_by_default, begun(verdict))
 
 
 def _row(scores: tuple[Score, ...], of: dict[str, str], several: bool, digits: int) -> Row:
