@@ -70,7 +70,7 @@ def test_the_net_is_one_that_fits_the_first_port(folder: Path) -> None:
     assert result.exit_code == 0, result.stderr
     made = json.loads((folder / "out" / "train.json").read_text())["network"]
     assert (made["port"], made["mechanism"], made["inputs"]) == ("chamber", "residual_net", ["level"])
-    assert "Share of the learned flow that each signal alone explains: level" in result.stdout
+    assert "Share of the learned flow that each signal alone explains: chamber" in result.stdout
     assert "refit: the physics alone, estimated on whole records" in result.stdout
     refused = train(folder, "--net", "friction")
     assert refused.exit_code == 2
