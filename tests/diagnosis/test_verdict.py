@@ -88,7 +88,7 @@ def test_an_equation_comes_with_what_it_holds_with_and_waves_with_their_size() -
         parameters=amplitudes,
         equation="port.air += -140 * wind",
         of_line="a straight line, with U = 1260 W/K beside it",
-        shared="U does what such a curve can do as well",
+        shared="the model's U does what such a curve can do as well",
         amplitudes={"b": (0.03, 0.001), "b_2": (0.02, None)},
     )
     (found,) = json.loads(json.dumps(verdict(effect).as_json()))["effects"]

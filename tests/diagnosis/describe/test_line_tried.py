@@ -92,7 +92,7 @@ def test_a_loss_by_the_wind_is_a_straight_line(told) -> None:
     assert (head, others) == ("port.air", ["wind", "(air - outside)"])
     assert float(slope) == pytest.approx(-20.0, rel=0.03)
     assert "a straight line in the place of the curve, with U = " in line.told
-    assert shared.startswith("U does what such a curve can do as well")
+    assert shared.startswith("the model's U does what such a curve can do as well")
     value, deviation = final.values()["U"], final.told.deviations()["U"]
     assert abs(value - 100.0) < 3.0 * deviation, "that bumps were left out is no knowledge"
 
@@ -104,7 +104,9 @@ def test_a_bent_curve_is_none_and_no_line_is_fitted_in_its_place(told, monkeypat
     monkeypatch.undo()
     monkeypatch.setattr(module, "_along", lambda *_: pytest.fail("a descent"))
     assert tried(final=final) is None
-    assert shared.startswith("U does what such a curve can do as well"), "a constant of it, however bent it is"
+    assert shared.startswith("the model's U does what such a curve can do as well"), (
+        "a constant of it, however bent it is"
+    )
 
 
 @pytest.mark.parametrize("how", ["weighed", "of_windows"])
@@ -126,7 +128,15 @@ def test_a_line_is_told_where_there_is_time_to_try_it(data_set, begun, seconds: 
 
 @pytest.mark.parametrize(
     ("force", "told"),
-    [([2.0, 1.0, -1.0], ", which is zero at wind = 1.5 m/s"), ([1.0, -1.0, 1.0], ""), ([1.0, 2.0, 3.0], "")],
+    [
+        ([2.0, 1.0, -1.0], ", which is zero at wind = 1.5 m/s"),
+        ([1.0, 0.0, -1.0], ", which is zero at wind = 1 m/s"),
+        ([0.0, 1.0, 2.0], ", which is zero at wind = 0 m/s"),
+        ([1.0, -1.0, 1.0], ""),
+        ([0.0, -1.0, 1.0], ""),
+        ([0.0, 0.0, 1.0], ""),
+        ([1.0, 2.0, 3.0], ""),
+    ],
 )
 def test_where_the_curve_is_zero_is_told_if_it_is_so_once(force: list[float], told: str) -> None:
     assert _where_zero(Curve("wind", "m/s", np.arange(3.0), np.array(force), "W")) == told
