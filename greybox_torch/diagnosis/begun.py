@@ -6,7 +6,7 @@ from greybox_torch.diagnosis.verdict import Verdict
 
 WITH_THE_ESTIMATE = (
     "On estimation experiments the re-estimated models are begun with start states that are estimated along with their parameters; all "
-    "else, as in `greybox compare`, with start states estimated on the first tenth."
+    "else, as in `greybox compare`, with start states estimated on the first tenth. Start states that the card fixes are as it has them."
 )
 
 

@@ -196,6 +196,12 @@ class Effect:
         }
         if self.equation:
             result["equation"] = self.equation
+        if self.of_line:
+            result["of_equation"] = self.of_line
+        if self.shared:
+            result["shared"] = self.shared
+        if self.amplitudes:
+            result["amplitudes"] = [self._amplitude(*told) for told in self.amplitudes.items()]
         if self.one_of is not None:
             result["one_of"] = self.one_of.as_json()
         if self.ceiling is not None:
@@ -205,6 +211,11 @@ class Effect:
         if self.memory is not None:
             result["memory"] = self.memory.as_json()
         return result
+
+    def _amplitude(self, sine: str, size: tuple[float, float | None]) -> dict[str, Any]:
+        """The entry of a wave whose sine's amplitude has that name."""
+        both = [sine.replace("b", "a", 1), sine]
+        return {"of": both, "value": size[0], "std": size[1], "unit": self.parameters[sine].get("unit", "")}
 
     def as_refinement_json(self) -> dict[str, Any]:
         """Its entry under `refinements`, where it is too small for a finding."""

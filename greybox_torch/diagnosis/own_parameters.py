@@ -58,16 +58,17 @@ def determined_together(estimates: Sequence[Estimate]) -> tuple[str, ...]:
 def far_refits(estimates: Sequence[Estimate]) -> tuple[str, ...]:
     """A sentence on those that were re-estimated far from what they are beside the effects; none elsewhere.
 
-    Not of one that is at a bound, which is told by itself, or that the recordings do not determine.
+    Not of one that is at a bound in either estimate, which is told by itself, or of which the recordings do not determine one of them.
     """
     far = [
         f"{in_unit(f'{one.name} = {one.refit[0]:.4g}', one.unit)} ({one.augmented[0]:.4g} with them)"
         for one in estimates
         if one.augmented is not None
-        and not one.at_bound[0]
+        and not any(one.at_bound)
         and one.refit[1] is not None
+        and one.augmented[1] is not None
         and one.refit[1] < abs(one.refit[0])
-        and one.refit[1] < abs(one.augmented[0] - one.refit[0])
+        and math.hypot(one.refit[1], one.augmented[1]) < abs(one.augmented[0] - one.refit[0])
         and _times(one.augmented[0], one.refit[0]) > FAR_TIMES
     ]
     if not far:

@@ -237,9 +237,9 @@ def _told(found: Findings) -> tuple[tuple[Effect, ...], tuple[Effect, ...]]:
     """The effects that are findings, and those that are too small for that; the latter by themselves are none of the model's."""
     if found.by_parameters is not None:
         return (found.by_parameters,), ()
-    study, state, judged = found.study, found.state, found.judged
+    study, state, judged, end = found.study, found.state, found.judged, found.schedule.judging
     by_effect = sizes(study, state, found.gains)
-    told = describe(study, state, judged.augmented, found.left, found.gains, by_effect, found.removed)
+    told = describe(study, state, judged.augmented, found.left, found.gains, by_effect, found.removed, end)
     if not found.complete:
         told = of_a_stopped_search(told, study.settings)
     small = small_ones(found, by_effect)

@@ -57,7 +57,7 @@ def told_at_bound(names: str) -> str:
 
 def told_law_at_bound(names: str) -> str:
     """What a reader has to know of parameters of a law of the library at their bounds, which are the law's own, without a full stop."""
-    return f"At a bound that the law itself has there: {names}; standard deviations mean little there"
+    return f"At a bound of the law itself: {names}; the standard deviations of these parameters mean little"
 
 
 def at_bounds(problem: Problem) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from greybox_torch.estimate.uncertainty import Uncertainty, of_information
 from greybox_torch.estimate.window_fit import WindowFit, evaluate
 from greybox_torch.linear_algebra import solve
 from greybox_torch.simulation.simulator import Simulator
@@ -21,3 +22,21 @@ def window_information(fit: WindowFit, simulator: Simulator) -> np.ndarray | Non
     if here is None:
         return None
     return here.hpp - np.einsum("wsp,wsq->pq", here.hsp, solve(here.hss, here.hsp))
+
+
+def uncertainty_over_windows(
+    fit: WindowFit, simulator: Simulator, known: np.ndarray | None = None
+) -> Uncertainty | None:
+    """Of the free parameters, start states of the windows eliminated; errors as white as they are. None where nothing is free, and where
+    the windows cannot be simulated.
+
+    Args:
+        known: what is known of the free parameters before (n_p,), as inverse variances about their values; by default nothing.
+    """
+    information = window_information(fit, simulator)
+    if information is None or not len(information):
+        return None
+    unknowns = len(information) + fit.starts.size
+    variance = float(fit.energies.sum()) / max(fit.problem.samples - unknowns, 1)
+    before = 0.0 if known is None else np.diag(known)
+    return of_information(information / max(variance, np.finfo(float).tiny) + before)

@@ -34,14 +34,14 @@ class Backlash(Mechanism):
     agree.
     Where the coupling's rate is known, its damper may lose ``damping`` within the gap, where the two sides do not touch: a part of its
     coefficient, or all of it. ``as_force``: the same as a force, with the ``stiffness`` of the spring as a parameter of its own, for
-    a model in which no state reaches this spring alone. ``stiffening``: what touches beyond the gap grows stiffer, by k_2 p² of force
-    with p what the deflection is beyond it, as teeth and cables do.
+    a model in which no state reaches this spring alone. ``stiffening``: what touches beyond the gap grows stiffer, by k_2 p |p| of
+    force with p what the deflection is beyond it, as teeth and cables do.
     """
 
     name = "backlash"
     kinds = ("coupling",)
     needs = ("deflection",)
-    later = ("damping", "centre", "k_2")
+    later = ("damping", "centre")
     springs = True
     nature = "a coupling that is no linear spring"
     explanation = "There is play: within a gap the coupling transmits nothing."
@@ -65,7 +65,7 @@ class Backlash(Mechanism):
             lost = "what the coupling's damper loses within the gap"
             found.append(Parameter("damping", 0.0, around.per("rate"), lower=0.0, description=lost))
         if self.stiffening:
-            grows = "by which the stiffness grows beyond the gap"
+            grows = "coefficient of p|p|, with p the deflection beyond the gap"
             found.append(Parameter("k_2", 0.0, around.per("deflection", 2), lower=0.0, description=grows))
         return found
 

@@ -244,3 +244,4 @@ def test_how_the_free_runs_of_a_verdict_begin_is_said() -> None:
     """Seen: 98.1 % in the table, 53.9 % of `compare` with the same model, and the reason in neither."""
     one = verdict()
     assert begun(one) == WITH_THE_ESTIMATE and begun(replace(one, complete=False)) == ""
+    assert "that the card fixes are as it has them" in begun(one)

@@ -28,7 +28,18 @@ def test_a_refit_far_off_is_told(refit: float, augmented: tuple[float, float] | 
         assert found[0].startswith("Re-estimated without the effects: C_air = 2.86e+04 J/K (1.2e+06 with them). It may")
 
 
-@pytest.mark.parametrize(("deviation", "at_bound"), [(None, False), (3e6, False), (1500.0, True)])
-def test_a_refit_that_is_not_determined_is_not_told(deviation: float | None, at_bound: bool) -> None:
-    one = Estimate("b", "N s/m", 1e6, (28600.0, deviation), (1.2e6, 430.0), (at_bound, False))
+@pytest.mark.parametrize(
+    ("deviations", "at_bound"),
+    [
+        ((None, 430.0), (False, False)),
+        ((3e6, 430.0), (False, False)),
+        ((1500.0, 430.0), (True, False)),
+        ((1500.0, None), (False, False)),
+        ((1500.0, 3e6), (False, False)),
+        ((1500.0, 430.0), (False, True)),
+    ],
+)
+def test_an_estimate_that_is_not_determined_is_not_told(deviations, at_bound) -> None:
+    """As little where it is the one with the effects: 1.2e6 ± 3e6 is not far from anything."""
+    one = Estimate("b", "N s/m", 1e6, (28600.0, deviations[0]), (1.2e6, deviations[1]), at_bound)
     assert far_refits([one]) == ()

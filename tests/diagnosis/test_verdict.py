@@ -80,6 +80,25 @@ def test_keys_are_those_of_the_contract() -> None:
     }
 
 
+def test_an_equation_comes_with_what_it_holds_with_and_waves_with_their_size() -> None:
+    """Seen: `port.air += -140 * wind * (air - outside)` in the file, without the U beside which it holds."""
+    amplitudes = {name: {"value": 0.02, "std": 0.001, "unit": "rad"} for name in ("a", "b", "a_2", "b_2")}
+    effect = replace(
+        BACKLASH,
+        parameters=amplitudes,
+        equation="port.air += -140 * wind",
+        of_line="a straight line, with U = 1260 W/K beside it",
+        shared="the model's U does what such a curve can do as well",
+        amplitudes={"b": (0.03, 0.001), "b_2": (0.02, None)},
+    )
+    (found,) = json.loads(json.dumps(verdict(effect).as_json()))["effects"]
+    assert (found["of_equation"], found["shared"]) == (effect.of_line, effect.shared)
+    assert found["amplitudes"] == [
+        {"of": ["a", "b"], "value": 0.03, "std": 0.001, "unit": "rad"},
+        {"of": ["a_2", "b_2"], "value": 0.02, "std": None, "unit": "rad"},
+    ]
+
+
 def test_share_of_the_ceiling_where_it_is_known() -> None:
     first, second = verdict(BACKLASH, replace(BACKLASH, ceiling=0.9)).as_json()["effects"]
     assert "ceiling" not in first and second["ceiling"] == 0.9

@@ -36,8 +36,13 @@ def with_effects(model: GreyBoxModel, effects: Mapping[tuple[str, str], Mapping[
 
 
 def _law(name: str, values: Mapping[str, float]) -> Mechanism:
-    forms = {"by_direction": "asymmetry", "limited_power": "base_speed"}
-    return LIBRARY[name](**{form: True for form, parameter in forms.items() if parameter in values})
+    forms = {
+        "by_direction": ("torque_saturation", "asymmetry"),
+        "limited_power": ("torque_saturation", "base_speed"),
+        "stiffening": ("backlash", "k_2"),
+    }
+    asked = (form for form, (law, parameter) in forms.items() if law == name and parameter in values)
+    return LIBRARY[name](**dict.fromkeys(asked, True))
 
 
 def rotor(machines: Path, effects: Mapping[tuple[str, str], Mapping[str, float]]) -> AugmentedModel:
@@ -174,6 +179,13 @@ def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
         assert told["files"] == [str(file)]
         assert told["not_said"] == made.rows
         assert "rotor.torque_ripple" in made._repr_html_() and "<pre>" in made._repr_html_()
+
+
+def test_play_whose_contact_grows_stiffer_is_told_not_to(machines: Path) -> None:
+    made: Any = gt.export(slide(machines, {("spring", "backlash"): {"half_gap": 0.1, "k_2": 40.0}}), to="mjcf")
+    assert ["k_2 = 40" in row["why"] for row in made.rows] == [False, True]
+    plain: Any = gt.export(slide(machines, {("spring", "backlash"): {"half_gap": 0.1}}), to="mjcf")
+    assert not any("k_2" in row["why"] for row in plain.rows)
 
 
 def test_steps_are_those_of_the_simulator(machines: Path) -> None:

@@ -108,7 +108,8 @@ def passed_over(study: Study, state: SearchState, others: HeldOut | None, judged
         return None
     laws, gains, by_it = found
     against = _empty(study, laws, by_it.augmented, gains) or _undone(study, laws, gains, frozenset())
-    stand = against is None and _drifting(study, laws, by_it) is None and by_it.holds and not by_it.unstable
+    against = against or _drifting(study, laws, by_it) or _within_disturbances(study, laws, by_it)
+    stand = against is None and by_it.holds and not by_it.unstable
     return found if stand and _shown(laws, others, by_it) else None
 
 

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.deadline import Deadline, until
 from greybox_torch.diagnosis.confirm.beyond_chance import part_borne_out
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.describe.amplitudes import wave_amplitudes
@@ -40,6 +41,7 @@ from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.select.told_from_time import limited_by_time
+from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.mechanisms.attachment import Attachment
@@ -65,6 +67,7 @@ def describe(
     gains: Mapping[str, Gain],
     sizes: Mapping[str, float],
     removed: float,
+    deadline: Deadline = Deadline(),
 ) -> tuple[Effect, ...]:
     """The effects of the search's final hypothesis.
 
@@ -74,10 +77,17 @@ def describe(
         gains: by effect, on held-out experiments, where there are any.
         sizes: by effect, the share of the whole mismatch that it accounts for.
         removed: the share of the validation error beyond the noise that they remove together.
+        deadline: when what a description can do without, straight lines in the place of curves, has to end.
     """
     told = tuple(
         _effect(
-            study, state, final, left, e, _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix))
+            study,
+            state,
+            final,
+            left,
+            e,
+            _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix)),
+            deadline,
         )
         for e, part in zip(state.effects, _parts(state), strict=True)
     )
@@ -94,7 +104,13 @@ def _parts(state: SearchState) -> list[float]:
 
 
 def _effect(
-    study: Study, state: SearchState, final: Final, left: LeftInFreeRuns, attachment: Attachment, account: _Account
+    study: Study,
+    state: SearchState,
+    final: Final,
+    left: LeftInFreeRuns,
+    attachment: Attachment,
+    account: _Account,
+    deadline: Deadline,
 ) -> Effect:
     model, gain = state.current.model, account.gain
     assert isinstance(model, AugmentedModel)
@@ -125,7 +141,9 @@ def _effect(
     curve = as_named(with_samples(curve, local, mechanism.repeats), model.base, site, mechanism.signals()[:1])
     memory = remembered(attachment, around, final, named(mechanism.signals()[0])) if mechanism.free else None
     line = straight_line(curve if isinstance(mechanism, Unknown) and not mechanism.kinematic else None, site, own)
-    tried = None if line else line_tried(study, state.current, final, attachment, site)
+    trial = partial(line_tried, study, state.current, final, attachment, site)
+    with until(deadline):
+        tried, _ = (None, True) if line else or_else(trial, lambda: None)
     return Effect(
         port=attachment.port,
         mechanism=Unknown.name if mechanism.free else mechanism.name,

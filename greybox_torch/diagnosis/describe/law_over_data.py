@@ -44,7 +44,7 @@ CERTAIN = 0.15
 VISITED = (0.002, 0.998)
 """Quantiles of the signal along the records between which the free curve is shown."""
 
-LEVEL = float(np.sqrt(np.pi))
+SUM_OF_BUMPS = float(np.sqrt(np.pi))
 """Sum of the bumps of a curve whose heights are one."""
 
 
@@ -172,9 +172,9 @@ def _points(
     fit: WindowFit, inner: np.ndarray, right: np.ndarray, along: np.ndarray, curve: Curve
 ) -> tuple[np.ndarray, np.ndarray]:
     """The mean signal (m,) over stretches and the force (m,) that each asks for there, of those that say something of it."""
-    information = inner.sum(axis=(1, 2)) / LEVEL**2
+    information = inner.sum(axis=(1, 2)) / SUM_OF_BUMPS**2
     said = np.flatnonzero(information > 0)
-    force = right.sum(axis=1)[said] / LEVEL / information[said]
+    force = right.sum(axis=1)[said] / SUM_OF_BUMPS / information[said]
     deviation = np.sqrt(fit.mean_square / information[said])
     size = fit.windows.steps
     middle = np.array([along[a : a + size].mean() for a in fit.windows.start[said]])

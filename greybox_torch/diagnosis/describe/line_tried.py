@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.diagnosis.describe.law_over_data import SUM_OF_BUMPS
 from greybox_torch.diagnosis.describe.signal_names import signal_name
 from greybox_torch.diagnosis.describe.straight_line import STRAIGHT, as_equation
 from greybox_torch.diagnosis.digits import digits
@@ -22,6 +23,7 @@ from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.levenberg_marquardt import Quadratic, Settings, minimise
 from greybox_torch.in_unit import in_unit
+from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.model import Balance, Body, Coupling
@@ -38,8 +40,13 @@ FEW = Settings(iterations=10, tolerance=1e-4)
 MOVED = 0.1
 """Part by which a parameter of the model is another beside the line than beside the curve, from where on that is told."""
 
-LEVEL = float(np.sqrt(np.pi))
-"""Sum of the bumps of a curve whose heights are one."""
+CLEARLY_BENT = 10.0 * STRAIGHT
+"""Share of what the best curve removes beside a level one that a line lacks, by the quadratic model of the error, from where on none is
+tried.
+"""
+
+INDEPENDENT = 1e-10
+"""Directions in which that model has less curvature than this share of the largest are not determined."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +59,7 @@ class Line:
 
 def line_tried(study: Study, fitted: Hypothesis, final: Final, attachment: Attachment, site: Port) -> Line | None:
     """The straight line that leaves hardly more error than the curve of ``attachment``; None where none does, and where whole records
-    were not fitted.
+    were not fitted, or not for the least squared error, by which a line is compared with the curve.
 
     A line through zero is tried first: a constant may be what a parameter of the model does.
 
@@ -65,8 +72,9 @@ def line_tried(study: Study, fitted: Hypothesis, final: Final, attachment: Attac
     names = signal_name(study.problem.model, site, mechanism.signal), _factor(study, site, mechanism.factor)
     if not isinstance(site, Body | Coupling | Balance) or names[1] is None or not names[0].isidentifier():
         return None
-    if final.uncertainty is None or mechanism.kinematic:
+    if final.uncertainty is None or final.of_windows or final.weighed or mechanism.kinematic:
         return None
+    study.working_on(f"trying a straight line at {attachment.port}")
     around, units = study.surroundings[attachment.port], {p.name: p.unit for p in fitted.model.declared_parameters}
     problem, simulator, _ = with_whole_curves(in_steps_for_whole_records(fitted, study.settings), at)
     run = FreeRun(problem, simulator)
@@ -75,12 +83,12 @@ def line_tried(study: Study, fitted: Hypothesis, final: Final, attachment: Attac
     if not set(places) <= set(free):
         return None
     here = run.quadratic(z)
-    if here is None:
-        return None
     columns, centres = [free.index(name) for name in places], np.array(mechanism.centres(around))
-    level = np.ones_like(centres)
-    for shape in ([centres], [level, centres]):
-        found = _along(run, z, columns, np.stack(shape, axis=1) / LEVEL)
+    shapes = [np.stack(shape, axis=1) / SUM_OF_BUMPS for shape in ([centres], [np.ones_like(centres), centres])]
+    if here is None or _clearly_bent(here, z, columns, shapes[-1]):
+        return None
+    for shape in shapes:
+        found = _along(run, z, columns, shape)
         if found is not None and found[1] <= (1.0 + HARDLY_MORE) * here.cost and _straight(run, z, columns, found[1]):
             point, cost, amounts = found
             own = {n: (at.values_by_name[n], float(v)) for n, v in zip(free, point, strict=False) if "." not in n}
@@ -97,6 +105,13 @@ def _straight(run: FreeRun, z: np.ndarray, columns: Sequence[int], cost: float) 
     return best is not None and (level is None or cost - best[1] <= STRAIGHT * (level[1] - best[1]))
 
 
+def _clearly_bent(here: Quadratic, z: np.ndarray, columns: Sequence[int], line: np.ndarray) -> bool:
+    """Whether no ``line`` (k, 2) would be :func:`_straight`, by far, as the error is near the unknowns ``z``: without any simulation."""
+    shapes = (np.eye(len(columns)), line, np.ones((len(columns), 1)))
+    best, straight, level = (_least(here, z, _within(z, columns, shape)) for shape in shapes)
+    return straight - best > CLEARLY_BENT * (level - best)
+
+
 def _factor(study: Study, site: Port, factor: str) -> str | None:
     """What multiplies a curve as one would write it, a level less an input as a difference; None where the class has no name for it."""
     name = signal_name(study.problem.model, site, factor) if factor else ""
@@ -109,10 +124,8 @@ def _along(
     """The optimum whose heights, at ``columns`` of the unknowns ``z`` (d,), are a sum of those of ``shape`` (k, m): the unknowns, the cost
     and the amounts (m,); None where it cannot be simulated.
     """
+    within = _within(z, columns, shape)
     others = np.setdiff1d(np.arange(len(z)), columns)
-    within = np.zeros((len(z), len(others) + shape.shape[1]))
-    within[others, np.arange(len(others))] = 1.0
-    within[np.ix_(columns, range(len(others), within.shape[1]))] = shape
     begun = np.concatenate([z[others], np.linalg.lstsq(shape, z[list(columns)], rcond=None)[0]])
 
     def evaluated(y: np.ndarray) -> Quadratic[None] | None:
@@ -126,6 +139,24 @@ def _along(
     if best is None:
         return None
     return within @ best.point, best.model.cost, best.point[len(others) :]
+
+
+def _within(z: np.ndarray, columns: Sequence[int], shape: np.ndarray) -> np.ndarray:
+    """What the unknowns ``z`` (d,) are by those beside ``columns`` and the amounts of ``shape`` (k, m): (d, d - k + m)."""
+    others = np.setdiff1d(np.arange(len(z)), columns)
+    within = np.zeros((len(z), len(others) + shape.shape[1]))
+    within[others, np.arange(len(others))] = 1.0
+    within[np.ix_(columns, range(len(others), within.shape[1]))] = shape
+    return within
+
+
+def _least(here: Quadratic, z: np.ndarray, within: np.ndarray) -> float:
+    """The least cost that the quadratic model at ``z`` (d,) has among unknowns that are a product of ``within`` (d, e)."""
+    curvature, slope = within.T @ here.hessian @ within, within.T @ (here.gradient - here.hessian @ z)
+    scale = 1.0 / np.sqrt(np.maximum(np.diag(curvature), 1e-300))
+    best = scale * least_squares(scale[:, None] * curvature * scale, -scale * slope, rcond=INDEPENDENT)
+    step = within @ best - z
+    return float(here.cost + here.gradient @ step + 0.5 * step @ here.hessian @ step)
 
 
 def _told(more: float, own: dict[str, tuple[float, float]], units: dict[str, str]) -> str:

@@ -86,8 +86,8 @@ def _told(effect: Effect, effects: Sequence[Effect], laws: Mapping[str, Law], wa
     unit, force = effect.profiles[0].unit if effect.profiles else "", _first(effect)[2]
     return (
         f"these recordings show one direction of motion, in which it cannot be told from {', '.join(map(_named, others))}: "
-        f"only their sum is known, {in_unit(f'{total:.4g}', force)} at {name} = {in_unit(f'{float(fast[0]):.3g}', unit)}. A recording "
-        "in the other direction tells them apart"
+        f"of their forces the sum alone is known, {in_unit(f'{total:.4g}', force)} at {name} = {in_unit(f'{float(fast[0]):.3g}', unit)}. "
+        "A recording in the other direction tells them apart"
     )
 
 

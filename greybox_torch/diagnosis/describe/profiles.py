@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import torch
 
+from greybox_torch.diagnosis.describe.signal_names import unit_at, unit_told
 from greybox_torch.diagnosis.effect import Curve, Profile
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
@@ -78,7 +79,9 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     if attachment.mechanism.states(around) or not signals or signals[0] not in around.ranges:
         return None
     name = _over(attachment.mechanism, around)
-    grid = _grid(attachment, around, name, problem)
+    site = next(port for port in model.base.all_ports if port.name == attachment.port)
+    unit_over = unit_told(model.base, site, around, name)
+    grid = _grid(attachment, around, name, unit_over, problem)
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
@@ -87,7 +90,7 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), grid.shape)
     factor = _factor(attachment.mechanism, around, held)
-    return Curve(name, unit_at(around, name), grid.numpy(), values, unit, factor=factor)
+    return Curve(name, unit_over, grid.numpy(), values, unit, factor=factor)
 
 
 def _factor(mechanism: Mechanism, around: Surroundings, held: Mapping[str, torch.Tensor]) -> Factor | None:
@@ -101,19 +104,13 @@ def _over(mechanism: Mechanism, around: Surroundings) -> str:
     return mechanism.drawn_over if mechanism.drawn_over in around.ranges else mechanism.signals()[0]
 
 
-def unit_at(around: Surroundings, signal: str) -> str:
-    """The unit of a signal at a port; what a body carries has that of the forces there, and a delayed input that of the input."""
-    signal = "input" if signal == "delayed" else signal
-    return around.units.get(signal, around.force_unit if signal == "load" and "speed" in around.units else "")
-
-
-def _grid(attachment: Attachment, around: Surroundings, signal: str, problem: Problem) -> torch.Tensor:
-    """Values of the signal that a law is drawn over, within its range: more of them where a free curve is over a part of that, and of a law
-    that repeats those of a turn, as so many turns would be drawn as a band.
+def _grid(attachment: Attachment, around: Surroundings, signal: str, unit: str, problem: Problem) -> torch.Tensor:
+    """Values of the signal that a law is drawn over, in ``unit``, within its range: more of them where a free curve is over a part of that,
+    and of a law that repeats those of a turn, as so many turns would be drawn as a band.
     """
     span, mechanism = around.ranges[signal], attachment.mechanism
     if mechanism.repeats and (order := attachment.own(problem.values_by_name)["order"]):
-        return torch.linspace(0.0, drawn_within(order, unit_at(around, signal)), POINTS, dtype=torch.float64)
+        return torch.linspace(0.0, drawn_within(order, unit), POINTS, dtype=torch.float64)
     if isinstance(mechanism, Unknown):
         grid = mechanism.grid(around, POINTS)
         return grid[(grid >= span.low) & (grid <= span.high)]

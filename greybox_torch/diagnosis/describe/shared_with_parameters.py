@@ -9,24 +9,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import torch
 
 from greybox_torch.diagnosis.curve import Curve
+from greybox_torch.diagnosis.describe.along_records import along_records
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.hypothesis.beside_curves import whole
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.rates_and_outputs import RatesAndOutputs
-from greybox_torch.estimate.window_fit import states_along
 from greybox_torch.in_unit import in_unit
 from greybox_torch.linear_algebra import least_squares
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.name_lists import listed
-
-MOST_SAMPLES = 1000
-"""That are looked at, spread evenly over the records."""
 
 SAME = 1e-3
 """Share of what a parameter changes, squared, that no curve may lack for it to do what the curve does."""
@@ -52,33 +47,31 @@ def shared_with_parameters(fitted: Hypothesis, attachment: Attachment, at: Probl
     values = listed([in_unit(f"{name} = {at.values_by_name[name]:.4g}", units.get(name, "")) for name in found])
     does, holds = ("does", "holds") if len(found) == 1 else ("do", "hold")
     return (
-        f"{listed(found)} {does} what such a curve can do as well, so that the recordings determine them together alone: {values} {holds} "
-        f"with the curve as it is drawn{_where_zero(curve)}"
+        f"the model's {listed(found)} {does} what such a curve can do as well: the recordings determine what both do together, not the "
+        f"part of either, and {values} {holds} with the curve as it is drawn{_where_zero(curve)}"
     )
 
 
 def _where_zero(curve: Curve) -> str:
-    """Where a curve crosses zero, a clause; "" where it does so nowhere, or at several places."""
-    sign = np.sign(curve.force)
-    places = np.flatnonzero(sign[:-1] * sign[1:] < 0)
+    """Where a curve is zero, a clause; "" where it is so nowhere, or at several places."""
+    force, values = curve.force, curve.values
+    between = np.flatnonzero(np.sign(force[:-1]) * np.sign(force[1:]) < 0)
+    part = force[between] / (force[between] - force[between + 1])
+    places = [*values[force == 0.0], *(values[between] + part * (values[between + 1] - values[between]))]
     if len(places) != 1:
         return ""
-    k = int(places[0])
-    part = curve.force[k] / (curve.force[k] - curve.force[k + 1])
-    at = float(curve.values[k] + part * (curve.values[k + 1] - curve.values[k]))
+    at = float(places[0])
     return f", which is zero at {in_unit(f'{curve.signal} = {digits(at)}', curve.unit)}"
 
 
 def _doing_the_same(fitted: Hypothesis, attachment: Attachment, at: Problem) -> list[str]:
     """The free parameters of the model of which a change moves rates and outputs as some change of the curve's heights does."""
-    model, fit = fitted.model, fitted.fits[0]
+    model = fitted.model
     assert isinstance(model, AugmentedModel)
     own = {p.name for p in model.base.declared_parameters}
     with_all = AugmentedModel(model.base, [whole(effect) for effect in fitted.effects], model.surroundings)
-    states, inputs = states_along(fit, fitted.simulator).T, fit.problem.driving_records.u
-    some = np.unique(np.linspace(0, states.shape[1] - 1, MOST_SAMPLES).astype(int))
     values = {p.name: 0.0 if p.shrunk else p.value for p in with_all.declared_parameters} | at.values_by_name
-    changes = RatesAndOutputs(with_all, values, torch.as_tensor(states[:, some]), torch.as_tensor(inputs[:, some]))
+    changes = along_records(fitted, with_all, values)
     mechanism = whole(attachment).mechanism
     assert isinstance(mechanism, Unknown)
     heights = [f"{attachment.prefix}.w_{k}" for k in mechanism.bumps]

@@ -5,20 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import torch
 
+from greybox_torch.diagnosis.describe.along_records import along_records
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.rates_and_outputs import RatesAndOutputs
-from greybox_torch.estimate.window_fit import states_along
 from greybox_torch.in_unit import in_unit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import SHARE
-
-MOST_SAMPLES = 2000
 
 ELSE = 0.01
 """Share of the variance of what a law changes, of any rate or output, up to which a parameter does the same."""
@@ -68,11 +65,7 @@ def turned(changes: RatesAndOutputs, problem: Problem, names: Sequence[str], swi
 def _changes(model: AugmentedModel, fitted: Hypothesis, final: Final, attachment: Attachment) -> RatesAndOutputs:
     """The model with a switch for the law, at samples that the records visit, with the recommended values."""
     switched = AugmentedModel(model.base, model.attachments, model.surroundings, switched=(attachment,))
-    states = states_along(fitted.fits[0], fitted.simulator)
-    every = max(1, -(-len(states) // MOST_SAMPLES))
-    inputs = fitted.fits[0].problem.driving_records.u[:, ::every]
-    values = {**final.values(), f"{attachment.prefix}.{SHARE}": 1.0}
-    return RatesAndOutputs(switched, values, torch.as_tensor(states[::every].T), torch.as_tensor(inputs))
+    return along_records(fitted, switched, {**final.values(), f"{attachment.prefix}.{SHARE}": 1.0})
 
 
 def _turned(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from greybox_torch.diagnosis.describe.profiles import unit_at
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.mechanisms.added_declarations import position_unit
 from greybox_torch.mechanisms.mechanism import Surroundings
@@ -36,6 +35,12 @@ def as_named(curve: Curve | None, model: GreyBoxModel, site: Port, own: tuple[st
     if curve.signal == "position" and not curve.unit:
         curve = replace(curve, unit=_unit_of_position(model, site))
     return replace(curve, signal=signal_name(model, site, curve.signal)) if named else curve
+
+
+def unit_at(around: Surroundings, signal: str) -> str:
+    """The unit of a signal at a port; what a body carries has that of the forces there, and a delayed input that of the input."""
+    signal = "input" if signal == "delayed" else signal
+    return around.units.get(signal, around.force_unit if signal == "load" and "speed" in around.units else "")
 
 
 def unit_told(model: GreyBoxModel, site: Port, around: Surroundings, signal: str) -> str:

@@ -17,6 +17,7 @@ from greybox_torch.estimate.coloured_run import ColouredRun, spectrum
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
+from greybox_torch.estimate.window_information import uncertainty_over_windows
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.unknown import Unknown
@@ -47,6 +48,16 @@ def beside_curves(hypothesis: Hypothesis, at: Problem, *, weighed: bool = False)
     if here is None or not np.isfinite(here.hessian).all():
         return None
     return problem, uncertainty(run, z, 2.0 * here.cost / problem.samples * stiff)
+
+
+def windows_beside_curves(hypothesis: Hypothesis, at: Problem) -> tuple[Problem, Uncertainty] | None:
+    """The same of the longest windows with start states of their own, for the problem ``at`` their values; None where they cannot be
+    simulated.
+    """
+    fit = hypothesis.fits[-1]
+    problem, simulator, weights = with_whole_curves(hypothesis, fit.problem)
+    found = uncertainty_over_windows(replace(fit, problem=problem), simulator, _known(problem, weights)[problem.free])
+    return None if found is None else (with_whole_curves(hypothesis, at)[0], found)
 
 
 def with_whole_curves(hypothesis: Hypothesis, at: Problem) -> tuple[Problem, Simulator, np.ndarray]:

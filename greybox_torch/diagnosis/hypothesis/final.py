@@ -9,7 +9,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
-from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves, weights_of_curves
+from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves, weights_of_curves, windows_beside_curves
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_for_whole_records
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
@@ -19,7 +19,7 @@ from greybox_torch.estimate.free_run import FreeRun, descended
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.returned import returned
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
-from greybox_torch.estimate.window_information import window_information
+from greybox_torch.estimate.window_information import uncertainty_over_windows
 from greybox_torch.simulation.records import Records
 from greybox_torch.simulation.side_by_side import side_by_side
 
@@ -28,13 +28,15 @@ from greybox_torch.simulation.side_by_side import side_by_side
 class Final:
     """A hypothesis fitted to whole estimation records: its problem there, and the uncertainty of the unknowns (None where unfitted).
 
-    ``weighed``: with errors weighed by their spectrum. ``with_curves`` makes the same with the weights of free curves among the unknowns,
+    ``weighed``: with errors weighed by their spectrum. ``of_windows``: its values are those of the longest windows, see
+    :func:`as_windows_have_it`. ``with_curves`` makes the same with the weights of free curves among the unknowns,
     None where there are none.
     """
 
     problem: Problem
     uncertainty: Uncertainty | None
     weighed: bool = False
+    of_windows: bool = False
     with_curves: Callable[[], Final | None] | None = None
 
     @cached_property
@@ -135,7 +137,7 @@ def _with_curves(hypothesis: Hypothesis, at: Problem, weighed: bool = False) -> 
 
 def from_longest_windows(hypothesis: Hypothesis) -> Final:
     """The values of the longest windows, as if no whole record could be simulated."""
-    return Final(from_windows(hypothesis.fits[-1]), None)
+    return Final(from_windows(hypothesis.fits[-1]), None, of_windows=True)
 
 
 def as_windows_have_it(
@@ -148,19 +150,13 @@ def as_windows_have_it(
     hypothesis = in_steps_for_whole_records(hypothesis, settings)
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
-    at, known = run.at(run.start), _over_windows(hypothesis)
-    return Final(at, known, with_curves=lambda: Final(replace(at, free=hypothesis.problem.free), known))
+    at, known = run.at(run.start), uncertainty_over_windows(hypothesis.fits[-1], hypothesis.simulator)
 
+    def with_curves() -> Final | None:
+        found = windows_beside_curves(hypothesis, at)
+        return None if found is None else Final(*found, of_windows=True)
 
-def _over_windows(hypothesis: Hypothesis) -> Uncertainty | None:
-    """Of the parameters, start states of the longest windows eliminated; errors as white as they are. None where nothing is free."""
-    fit = hypothesis.fits[-1]
-    information = window_information(fit, hypothesis.simulator)
-    if information is None or not len(information):
-        return None
-    unknowns = len(information) + fit.starts.size
-    variance = float(fit.energies.sum()) / max(fit.problem.samples - unknowns, 1)
-    return of_information(information / max(variance, np.finfo(float).tiny))
+    return Final(at, known, of_windows=True, with_curves=with_curves if weights_of_curves(hypothesis).any() else None)
 
 
 def _on_all(hypothesis: Hypothesis, records: Records, problem: Problem) -> FreeRun:

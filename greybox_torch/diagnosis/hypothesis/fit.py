@@ -142,7 +142,9 @@ def hypothesis(
     fits = no_worse_than_longer(fits, at, simulator, limits)
     hidden = not effects and all(reaches_noise(base, fit, settings, settings.far_above_noise) for fit in fits)
     implausible = implausibility(base, fits[-1].problem, settings) if hidden else 0.0
-    return Hypothesis(tuple(effects), model, simulator, tuple(fits), _floor(base, settings), frozen, implausible)
+    # Kept by every hypothesis of a search, the last passes would take memory that nothing uses again.
+    kept = tuple(fit if fit.ended is None else replace(fit, ended=None) for fit in fits)
+    return Hypothesis(tuple(effects), model, simulator, kept, _floor(base, settings), frozen, implausible)
 
 
 def without_free(problem: Problem, names: Collection[str]) -> Problem:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from greybox_torch.diagnosis.beliefs import Beliefs
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.library import LIBRARY
@@ -15,12 +16,12 @@ Begun = tuple[Mechanism, Mapping[str, float]]
 
 
 def forms(
-    effect: Attachment, state: SearchState, begun: Mapping[str, float] | None = None
+    effect: Attachment, state: SearchState, beliefs: Beliefs, begun: Mapping[str, float] | None = None
 ) -> Iterator[tuple[Attachment, dict[str, float]]]:
     """The richer forms of an effect, and the laws that contain it, that are not there already under their own name, and all parameters to
     begin with.
 
-    Neither among what was found nor among what the model was given with.
+    Neither among what was found nor among what the model was given with; none that ``beliefs`` exclude.
 
     Args:
         begun: the values that they begin with; by default those of the state.
@@ -31,22 +32,22 @@ def forms(
     own = effect.own(values)
     for mechanism, own_start in (*effect.mechanism.richer(own), *_containing(effect, own, state)):
         law = replace(effect, mechanism=mechanism)
-        if law.prefix not in (state.prefixes | given) - {effect.prefix}:
+        if law.prefix not in (state.prefixes | given) - {effect.prefix} and not beliefs.exclude(law):
             yield law, {**others, **{f"{law.prefix}.{n}": v for n, v in own_start.items()}}
 
 
 def forms_of_both(
-    effect: Attachment, newest: Attachment, before: SearchState, after: SearchState
+    effect: Attachment, newest: Attachment, before: SearchState, after: SearchState, beliefs: Beliefs
 ) -> Iterator[tuple[Attachment, dict[str, float]]]:
     """The richer forms of an effect, and those of the newest one at its port that have in them what it is, such as a mean level.
 
     A form that stands for both begins with what the two came to.
     """
-    for law, start in forms(effect, before):
+    for law, start in forms(effect, before, beliefs):
         if not law.mechanism.stands_for:
             yield law, start
     for own, other in ((effect, newest), (newest, effect)):
-        for law, start in forms(own, before, after.current.values()):
+        for law, start in forms(own, before, beliefs, after.current.values()):
             if other.mechanism.name in law.mechanism.stands_for:
                 theirs = _of_the_other(law, start, other, after)
                 both = start | {n: v for n, v in theirs.items() if start[n] == 0.0}

@@ -41,7 +41,7 @@ def with_richer_form(study: Study, state: SearchState, done: SelectionStep | Non
         return state
     taken = done.taken
     effect = taken.candidate.attachment
-    single = ((law, start) for law, start in forms(effect, state) if not law.mechanism.stands_for)
+    single = ((law, start) for law, start in forms(effect, state, study.beliefs) if not law.mechanism.stands_for)
     tried = (_in_form(study, state, taken, law, start) for law, start in single)
     paying = [r for r in tried if r is not None and _preferred(study, state, effect, r)]
     best = min(paying, key=lambda r: priced_score(r.fitted, study.settings), default=None)
@@ -85,7 +85,7 @@ def richer_instead(study: Study, before: SearchState, after: SearchState) -> Sea
         done = before.step_of(effect.prefix)
         if done is None or done.taken is None:
             continue
-        for law, start in forms_of_both(effect, latest, before, after):
+        for law, start in forms_of_both(effect, latest, before, after, study.beliefs):
             found = _in_form(study, before, done.taken, law, start)
             far = (
                 found is not None and priced_score(found.fitted, study.settings) <= to_reach and _improves(study, found)

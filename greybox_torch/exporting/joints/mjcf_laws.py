@@ -73,13 +73,17 @@ def backlash(at: Place) -> Said:
     centre, gap = at.values.get("centre", 0.0), at.values["half_gap"]
     ends = (centre - gap, centre + gap)
     own = stiffness(at.model, at.port) if isinstance(at.port, Coupling) else None
+    grows = at.values.get("k_2")
+    odd = [f"the part k_2 p|p| beyond the gap with k_2 = {grows:.6g}: MJCF has p^2, which is not odd"] if grows else []
     if own is None:
         band = f'springlength="{ends[0]:.6g} {ends[1]:.6g}"'
         return [], [
-            f"the stiffness of this coupling cannot be read from the model: write a fixed tendon with yours and {band}"
+            f"the stiffness of this coupling cannot be read from the model: write a fixed tendon with yours and {band}",
+            *odd,
         ]
     left = [
-        f"the tendon takes the place of the joint's own spring ({own:.6g}): take that out; what it has beyond a linear spring is not in it"
+        f"the tendon takes the place of the joint's own spring ({own:.6g}): take that out; what it has beyond a linear spring is not in it",
+        *odd,
     ]
     if at.values.get("damping"):
         left.append(

@@ -39,7 +39,7 @@ def _card(sheets: Sheets, card: Card) -> None:
     if rows:
         draw_table(sheets, [("Parameter of its law", ""), ("± one standard deviation", "")], rows, [0.5, 0.5])
         sheets.gap(6.0)
-    for told in filter(None, (card.bounded, card.undetermined)):
+    for told in filter(None, (card.bounded, card.remarks)):
         sheets.text(f"{told}.", 8.0, colour=QUIET)
         sheets.gap(4.0)
     facts = [("Law", card.equation)] if card.equation else []

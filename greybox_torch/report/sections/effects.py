@@ -55,7 +55,8 @@ class Share:
 class Card:
     """An effect as its card shows it; ``statement`` where it stands for several that cannot be told apart, with their ``probability``
     and a sentence (``alike``). ``explained``: the share of the mismatch that free runs of the validation experiments leave no more; empty
-    beside further effects and refinements, with which it is shared, and where free runs say nothing of it.
+    beside further effects and refinements, with which it is shared, and where free runs say nothing of it. ``bounded`` and ``remarks``:
+    what is to be known of its parameters, in sentences without the last full stop.
     """
 
     title: str
@@ -70,10 +71,9 @@ class Card:
     size: str
     explained: str
     ceiling: str
-    of_a_curve: ClassVar[str] = OF_A_CURVE
     parameters: tuple[ParameterRow, ...]
     bounded: str
-    undetermined: str
+    remarks: str
     shares: tuple[Share, ...]
     one_effect: str
     experiment: str
@@ -83,6 +83,7 @@ class Card:
     responses: Responses | None
     profiles: Chart | None
     timelines: Chart | None
+    of_a_curve: ClassVar[str] = OF_A_CURVE
 
     @property
     def experiment_tells(self) -> str:
@@ -131,13 +132,7 @@ def _card(effect: Effect, shown: Responses | None, explained: str) -> Card:
         ceiling="" if effect.ceiling is None else text.percent(effect.ceiling),
         parameters=_parameters(effect),
         bounded=effect.bounded,
-        undetermined=text.first_capital(
-            ". ".join(
-                filter(
-                    None, (effect.undetermined, *map(text.first_capital, (effect.of_line, effect.shared)), effect.like)
-                )
-            )
-        ),
+        remarks=_remarks(effect),
         shares=_shares(effect),
         one_effect="" if whole is None or not whole.one_effect else text.first_capital(whole.told_one_effect),
         experiment=effect.separating_experiment if whole is None or whole.separable else "",
@@ -148,6 +143,14 @@ def _card(effect: Effect, shown: Responses | None, explained: str) -> Card:
         profiles=_profiles(effect),
         timelines=_timelines(effect),
     )
+
+
+def _remarks(effect: Effect) -> str:
+    """What is to be known of its parameters and its equation; a list of parameters keeps their names as they are."""
+    own = effect.undetermined
+    of_names = own.partition(":")[0].partition(",")[0] in effect.parameters
+    others = map(text.first_capital, (effect.of_line, effect.shared, effect.like))
+    return ". ".join(filter(None, (own if of_names else text.first_capital(own), *others)))
 
 
 def _unknown_title(effect: Effect) -> str:

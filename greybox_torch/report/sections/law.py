@@ -25,8 +25,8 @@ A_GAP = 5
 """A gap is at least so many bins side by side with hardly any sample: a free curve is a guess there; a shorter stretch its ends hold."""
 
 FEW_AT_END = 0.25
-"""Share of the samples that bins with any have as a rule, below which those at either end of a curve have hardly any: nothing holds it
-from beyond.
+"""Share of the samples of the median bin that has any, below which bins at either end of a curve have hardly any: beyond them nothing
+holds it.
 """
 
 _AT_PORT = ("speed", "position", "deflection", "rate", "level", "load", "input", "output")
@@ -90,7 +90,7 @@ def _gaps(curve: Curve) -> np.ndarray:
 
 
 def _few_from_the_end(seen: np.ndarray) -> np.ndarray:
-    """Which bins (b,), from the first one on, have hardly any sample one after another."""
+    """Which bins (b,) stand before the first one that has more than hardly any of the samples ``seen`` (b,)."""
     usual = float(np.median(seen[seen > 0])) if (seen > 0).any() else 0.0
     return np.logical_and.accumulate(seen < FEW_AT_END * usual)
 

@@ -161,3 +161,16 @@ def test_what_free_runs_need_is_no_less_there_for_being_undone_over_short_window
         monkeypatch.setattr(holding, name, step)
     left, _, judged, _, _ = holding.holding(stub(settings=DiagnosisSettings()), both, None, {}, first)
     assert (left, judged) == ((both, first) if kept else (fewer, then))
+
+
+@pytest.mark.parametrize("against", [None, "_drifting", "_within_disturbances"])
+def test_laws_that_were_passed_over_stand_where_nothing_speaks_against_one(monkeypatch, stub, against) -> None:
+    """As of any other law: an offset beside which hardly more than noise is left is a slow disturbance."""
+    by_it = stub(holds=True, unstable=(), augmented="records", by_windows_alone=False)
+    found = (stub(effects=(stub(prefix="tank.constant_bias"),)), {}, by_it)
+    monkeypatch.setattr(holding, "refitted_laws", lambda *args: found)
+    monkeypatch.setattr(holding, "_empty", lambda *args: None)
+    monkeypatch.setattr(holding, "_undone", lambda *args: None)
+    if against is not None:
+        monkeypatch.setattr(holding, against, lambda *args: "tank.constant_bias")
+    assert holding.passed_over(stub(), stub(), None, stub()) is (found if against is None else None)

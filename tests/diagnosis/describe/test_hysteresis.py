@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from greybox_torch.diagnosis.describe.hysteresis import hysteresis_loop
-from greybox_torch.diagnosis.describe.profiles import law_curve, unit_at
-from greybox_torch.diagnosis.describe.signal_names import as_named
+from greybox_torch.diagnosis.describe.profiles import law_curve
+from greybox_torch.diagnosis.describe.signal_names import as_named, unit_at
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.augmented_model import AugmentedModel

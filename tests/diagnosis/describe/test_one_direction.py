@@ -43,7 +43,7 @@ def test_friction_and_its_asymmetry(speed: np.ndarray, told: bool, stub, monkeyp
     first, second = with_likes(fitted, effects, stub(parameter_tensors=p))
     assert bool(first.like) is bool(second.like) is told
     if told:
-        sum_of_both = "only their sum is known, 1492 N at speed = 1.48"
+        sum_of_both = "of their forces the sum alone is known, 1492 N at speed = 1.48"
         assert f"cannot be told from Coulomb asymmetry at sled (delta = -225 N): {sum_of_both}" in first.like
         assert first.like in first.remarks
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve, unit_at, with_samples
+from greybox_torch.diagnosis.describe.profiles import POINTS, law_curve, with_samples
+from greybox_torch.diagnosis.describe.signal_names import unit_at
 from greybox_torch.diagnosis.effect import Curve
 from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.mechanisms.attachment import attach
@@ -18,6 +19,7 @@ from greybox_torch.mechanisms.mechanism import Range, Surroundings
 from greybox_torch.mechanisms.torque_ripple import TorqueRipple
 from greybox_torch.mechanisms.transmission_error import TransmissionError
 from greybox_torch.mechanisms.unknown import Unknown
+from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
 from greybox_torch.model.signals import parameter_signals
 
 AROUND = Surroundings({"speed": Range(-6.0, 6.0, 3.0)}, {}, "N m", 0.01)
@@ -78,5 +80,39 @@ def test_a_law_that_repeats_is_drawn_over_a_turn(motor, order: float, turns: flo
     assert over is not None and over.seen is not None and over.seen.sum() == 4000
 
 
-def test_a_transmission_error_is_drawn_over_the_position_of_what_drives() -> None:
-    assert TransmissionError.drawn_over == "position" and TransmissionError.repeats
+class Screw(GreyBoxModel):
+    """A motor, or a slide, that drives a load by a spring; nobody says what unit the position has at the coupling."""
+
+    inputs = [Input("force", "N")]
+    outputs = [Output("place")]
+    parameters = [Parameter("k", 5.0)]
+    ports = [
+        Body("drive", speed="speed", position="place"),
+        Coupling("spring", deflection="twist", rate=lambda x, u, p: x.speed),
+    ]
+
+    def __init__(self, unit: str) -> None:
+        self.states = [State("place", unit), State("speed", f"{unit}/s"), State("twist", unit)]
+        super().__init__()
+
+    def derivative(self, x, u, p, port):
+        return {"place": x.speed, "speed": u.force - port.spring, "twist": x.speed - p.k * x.twist}
+
+    def output(self, x, u, p):
+        return {"place": x.place}
+
+
+@pytest.mark.parametrize(("unit", "periods"), [("m", 1), ("rad", 3)])
+def test_a_transmission_error_is_drawn_over_the_position_of_what_drives(unit: str, periods: int) -> None:
+    """Seen: the error of a screw over 3 m, as if those were a turn."""
+    model = Screw(unit)
+    ranges = {name: Range(-9.0, 9.0, 3.0) for name in ("deflection", "position", "rate")}
+    around = Surroundings(ranges, {"deflection": unit}, "N", 0.01)
+    effect = attach(model, "spring", TransmissionError(3.0), "+twist")
+    made = AugmentedModel(model, [effect], {"spring": around})
+    values = {q.name: q.value for q in made.declared_parameters} | {f"{effect.prefix}.a": 0.3}
+    problem: Any = SimpleNamespace(parameter_tensors=parameter_signals(values), values_by_name=values)
+    curve = law_curve(made, effect, around, problem)
+    assert curve is not None and (curve.signal, curve.unit) == ("position", unit)
+    assert curve.values[-1] == pytest.approx(periods * 2 * np.pi / 3.0)
+    assert (curve.force.min(), curve.force.max()) == (pytest.approx(-0.3, rel=0.01), pytest.approx(0.3, rel=0.01))

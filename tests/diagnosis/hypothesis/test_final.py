@@ -90,6 +90,20 @@ def test_deviations_beside_a_curve_allow_for_its_heights(motor_data, motor, begu
     assert finish(search.plain).with_curves is None
 
 
+def test_that_bumps_were_left_out_is_no_knowledge_where_the_values_of_windows_stand(motor_data, motor, begun) -> None:
+    """As where whole records were fitted. What decides about effects goes by the deviations beside the curve as it is."""
+    search = begun(motor_data(torque=lambda q, v: 0.02 * np.cos(0.1 * v), noise=0.02), motor)
+    curve = search.refitted((attach(motor, "rotor", Unknown("speed", 8, left_out=(1, 3, 4, 6))),), search.plain)
+    final = as_windows_have_it(curve)
+    held, told = final.deviations(), final.told.deviations()
+    assert held.keys() == {"J", "b"} and final.of_windows and final.told.of_windows
+    assert {f"rotor.unknown.w_{k}" for k in range(8)} == told.keys() - {"J", "b"}
+    assert final.told.values().items() >= final.values().items() and np.isfinite(told["b"])
+    print(held, told)
+    assert told["b"] > 2.0 * held["b"], "what is proportional to the speed, the whole curve can do as well"
+    assert as_windows_have_it(search.plain).with_curves is None
+
+
 def test_drift_beside_an_effect_does_not_bend_the_machine(motor_data, motor, begun) -> None:
     """Noise over windows, a slow voltage over the whole record: errors weighed by their spectrum leave the parameters where they are."""
     drift = 0.02 * np.sin(np.linspace(0.0, 9.0, 2000))

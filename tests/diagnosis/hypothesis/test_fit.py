@@ -50,3 +50,11 @@ def test_no_other_start_is_tried_where_the_noise_is_reached(dead_zone_search, mo
         monkeypatch.setattr(noise_module, "noise_floor", lambda *_, floor=noise: floor)
         hypothesis(study.problem, (), {}, starts, options=study.options, at=[40])
         assert sum(begun) == tried
+
+
+def test_a_hypothesis_does_not_keep_the_passes_that_its_fits_ended_with(dead_zone_search) -> None:
+    """Seen: matrices of every window of every length, for every hypothesis of a search."""
+    study, plain = dead_zone_search.study, dead_zone_search.plain
+    again = hypothesis(study.problem, (), {}, [study.card], options=study.options, at=[40])
+    assert again is not None and again.fits[0].ended is None
+    assert all(fit.ended is None for fit in plain.fits)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.forms import forms_of_both
@@ -52,7 +53,8 @@ def test_a_level_that_stays_and_one_that_fades_are_asked_as_one_law(motor_data, 
     level, fading = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", FrictionWarmup())
     before = found(search, fading, {f"{fading.prefix}.delta": 0.05})
     after = before.at(search.refitted((fading, level), before.current))
-    forms = {law.mechanism.stands_for: start for law, start in forms_of_both(fading, level, before, after)}
+    asked = forms_of_both(fading, level, before, after, NO_BELIEFS)
+    forms = {law.mechanism.stands_for: start for law, start in asked}
     start = forms[("coulomb_friction", "friction_warmup")]
     values = after.current.values()
     assert start["rotor.friction_warmup.F_c"] == values[f"{level.prefix}.F_c"] == pytest.approx(0.1, rel=0.2)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
 from greybox_torch.diagnosis.refit.ranked import judged
 from greybox_torch.diagnosis.screen.shortlist import Candidate
@@ -159,9 +160,9 @@ def test_a_filter_of_second_order_is_found_behind_a_delay_or_a_lag(data_set, mot
     assert values[f"{law.prefix}.damping"] == pytest.approx(damping, rel=0.05)
     both = replace(state, current=replace(state.current, effects=(effect, attach(motor, "sensor", SensorLag()))))
     if isinstance(taken, OutputDelay):
-        assert not list(forms(effect, both)), "there is a lag at the sensor already"
+        assert not list(forms(effect, both, NO_BELIEFS)), "there is a lag at the sensor already"
     dry = attach(motor, "sensor", SensorBias())
-    assert not list(forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0})))
+    assert not list(forms(dry, found(search, dry, {f"{dry.prefix}.bias": 0.0}), NO_BELIEFS))
 
 
 @pytest.mark.parametrize(
@@ -226,11 +227,14 @@ def test_a_law_that_contains_what_was_found_is_asked_where_it_was_no_rival(motor
     search = begun(motor_data(torque=lambda q, v: -0.06 * np.tanh(v / 0.2)), motor)
     dry, bristles = attach(motor, "rotor", CoulombFriction()), attach(motor, "rotor", PreslidingHysteresis())
     state = found(search, dry, {f"{dry.prefix}.F_c": 0.06})
-    asked = {law.mechanism.name: start for law, start in forms(dry, state)}
+    asked = {law.mechanism.name: start for law, start in forms(dry, state, NO_BELIEFS)}
     assert {"coulomb_asymmetry", "presliding_hysteresis"} <= set(asked)
     level = state.current.values()[f"{dry.prefix}.F_c"]
     assert asked["presliding_hysteresis"][f"{bristles.prefix}.F"] == level
     (step,) = state.steps
     rival = replace(step.taken, candidate=Candidate(bristles, (), 0.1))
     beside = replace(state, steps=(replace(step, ranked=(*step.ranked, rival)),))
-    assert "presliding_hysteresis" not in {law.mechanism.name for law, _ in forms(dry, beside)}
+    assert "presliding_hysteresis" not in {law.mechanism.name for law, _ in forms(dry, beside, NO_BELIEFS)}
+    excluded = Beliefs({"rotor/presliding_hysteresis": 0.0, "*/coulomb_asymmetry": 0.0})
+    left = {law.mechanism.name for law, _ in forms(dry, state, excluded)}
+    assert left == set(asked) - {"presliding_hysteresis", "coulomb_asymmetry"}

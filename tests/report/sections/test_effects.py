@@ -100,3 +100,17 @@ def test_an_unknown_effect_shows_its_curve_not_its_weights(of_kind: Callable[[st
 
 def test_nothing(of_kind: Callable[[str], Verdict]) -> None:
     assert Effects.of(of_kind("nothing")) is None
+
+
+def test_remarks_begin_as_sentences_do_and_names_of_parameters_stay_as_they_are(
+    of_kind: Callable[[str], Verdict],
+) -> None:
+    """Seen: "A: the standard deviation is larger" for the cosine's amplitude a, and a sentence that began "these recordings"."""
+    (effect,) = of_kind("found").effects
+    waves = {"a": {"value": 0.01, "std": 0.4, "unit": "rad"}, "b": {"value": 0.2, "std": 0.01, "unit": "rad"}}
+    told = replace(effect, parameters=waves, of_line="a straight line does", like="these recordings show one direction")
+    effects = Effects.of(replace(of_kind("found"), effects=(told,)))
+    assert effects is not None
+    remarks = effects.cards[0].remarks
+    assert remarks.startswith("a: the standard deviation")
+    assert remarks.endswith(". A straight line does. These recordings show one direction")
