@@ -130,7 +130,7 @@ def compare(
         ``compare(data, {"start": Motor(), "fit": fitted, "earlier": "results/model"}).plot()``
     """
     device, precision = check_device(device), check_precision(precision)
-    if isinstance(models, DataSet):
+    if isinstance(models, DataSet | str | PathLike):
         raise ArgumentError("models", Kind.of(models), 'expected the data first: compare(data, {"start": Motor()})')
     data = check_data(data)
     if not isinstance(models, Mapping) or not models:
