@@ -10,7 +10,7 @@ from typing import Any
 from greybox_torch.api.free_runs import Runs
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.begun import BEGINNINGS
+from greybox_torch.estimate.initial import BEGINNINGS
 
 LESS = 10.0
 """Points of % by which a fit has to be worse than with the model's own start states to be told."""

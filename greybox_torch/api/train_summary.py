@@ -11,7 +11,7 @@ from greybox_torch.api.scores import Scores, print_scores, print_substeps, squar
 from greybox_torch.api.train_explained import print_explanation
 from greybox_torch.api.train_held_out import lost_choices, mostly_lost
 from greybox_torch.data import DataSet
-from greybox_torch.diagnosis.begun import BEGINNINGS
+from greybox_torch.estimate.initial import BEGINNINGS
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained

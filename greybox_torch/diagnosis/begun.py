@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from greybox_torch.diagnosis.verdict import Verdict
-
-BEGINNINGS = (
-    "Free runs are begun with start states estimated on the first tenth of each experiment; in `greybox fit` and `greybox diagnose`, "
-    "re-estimated models begin estimation experiments with the start states of their estimate, so that fits may differ."
-)
+from greybox_torch.estimate.initial import BEGINNINGS
 
 
 def begun(verdict: Verdict) -> str:
