@@ -36,8 +36,9 @@ class Checkpoint:
     ``model`` is how to load the model (a built-in name, or "file.py:Class"), ``title`` its name for reports; ``values`` and ``units``
     are by parameter name, in declared order, values in those units. ``effects`` describe what is attached to its ports ([] for a
     plain model). ``free_starts`` says that every start state was estimated, whatever the model holds fixed. ``dataset`` is the
-    SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them. ``own_weights`` is the SHA-256 of
-    weights that the model has beside its parameters, which are not in the checkpoint; "" of a model without any.
+    SHA-256 of the samples that the values were estimated from, ``figures`` what was reached on them; ``own_starts`` is
+    the model there whose free runs of estimation experiments begin with start states of the estimate, "" for none. ``own_weights`` is the
+    SHA-256 of weights that the model has beside its parameters, which are not in the checkpoint; "" of a model without any.
     """
 
     model: str
@@ -49,6 +50,7 @@ class Checkpoint:
     own_weights: str = ""
     dataset: str = ""
     figures: Sequence[Mapping[str, Any]] = ()
+    own_starts: str = ""
     versions: Mapping[str, str] = field(default_factory=lambda: _versions())
     created: str = field(default_factory=lambda: datetime.now(UTC).isoformat(timespec="seconds"))
 
@@ -82,8 +84,9 @@ def checkpoint_files(stem: Path, checkpoint: Checkpoint) -> dict[Path, str | byt
     packed = save({name: np.asarray(value, dtype=np.float64) for name, value in checkpoint.values.items()})
     content = asdict(checkpoint)
     del content["values"]
-    if not checkpoint.own_weights:
-        del content["own_weights"]
+    for name in ("own_weights", "own_starts"):
+        if not content[name]:
+            del content[name]
     content |= {"schema": SCHEMA, "parameters": list(checkpoint.values), "tensors": hashlib.sha256(packed).hexdigest()}
     return {tensors: packed, card: json_text(content)}
 

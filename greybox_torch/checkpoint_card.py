@@ -42,6 +42,7 @@ class CheckpointCard(BaseModel):
     created: str
     tensors: str
     own_weights: str = ""
+    own_starts: str = ""
 
 
 def read_checkpoint_card(path: Path) -> CheckpointCard:

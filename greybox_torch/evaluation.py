@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from greybox_torch.data import DataSet
+from greybox_torch.data import DataSet, load_dataset
 from greybox_torch.errors import ArgumentError, Kind, UserError
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.divergence import FAR, diverges_from
@@ -116,7 +116,7 @@ class Evaluation:
 
 
 def evaluate(
-    data: DataSet,
+    data: DataSet | str | PathLike[str],
     checkpoint: str | PathLike[str] | None = None,
     *,
     model: GreyBoxModel | None = None,
@@ -126,7 +126,7 @@ def evaluate(
     """Simulate all experiments of ``data`` with the card's values, or with the model of a checkpoint.
 
     Args:
-        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``.
+        data: the experiments, from :func:`greybox_torch.load_dataset` or made with ``DataSet(…)``; or their card by path.
         checkpoint: what `greybox fit`, `train` or `diagnose` have written: either of its two files, what their names have in
             common, or the folder that it is in.
         model: wins over the model that the card names; either stands in for a checkpoint's whose class is not where it was.
@@ -136,8 +136,12 @@ def evaluate(
     Raises:
         UserError: neither card nor caller names a model, or the checkpoint is damaged or of another model.
     """
+    if isinstance(data, str | PathLike):
+        data = load_dataset(data)
     if not isinstance(data, DataSet):
-        raise ArgumentError("data", Kind.of(data), "expected a DataSet first, as in evaluate(data, model=Motor())")
+        raise ArgumentError(
+            "data", Kind.of(data), "expected a DataSet first, or a card by path, as in evaluate(data, model=Motor())"
+        )
     if model is None and data.model is None:
         raise UserError(f"{data.place('[model] name')} is missing and no model is given; expected one of them")
     given = load_model(str(data.model)) if model is None else model

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
@@ -34,12 +35,17 @@ def check_model(model: Any, *, runs: bool = True) -> GreyBoxModel:
     if isinstance(model, type) and issubclass(model, GreyBoxModel):
         name = model.__name__
         raise ArgumentError("model", Kind(f"the class {name}"), f"expected an object of it: {name}()")
-    if isinstance(model, DataSet):
-        raise ArgumentError(
-            "model", Kind.of(model), "expected a model first, and the data second, as in fit(model, data)"
-        )
+    check_no_data(model)
     named = f", as load_model({quoted(model)}) gives one" if isinstance(model, str) else ""
     raise ArgumentError("model", Kind.of(model), f"expected a model{named}, or the result of fit or diagnose")
+
+
+def check_no_data(model: Any) -> None:
+    """Raises ArgumentError where data, or their card by path, stand in the place of a model."""
+    by_path = isinstance(model, str | PathLike) and Path(model).suffix == ".toml"
+    if by_path or isinstance(model, DataSet):
+        found = str(model) if by_path else Kind.of(model)
+        raise ArgumentError("model", found, "expected a model first, and the data second, as in fit(model, data)")
 
 
 @once_per_model

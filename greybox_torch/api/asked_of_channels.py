@@ -39,7 +39,7 @@ def asked_where_poor(
     if not poor(refit) or beginnings(data) is None:
         return None
     progress(
-        "The validation fit is poor: trying short refits with channels exchanged, of the other sign, of another scale, or of another zero"
+        "The validation fit is poor: trying short refits with channels exchanged, of the other sign, or in another unit or scale"
     )
     made, achieved = simulator(), mean_fit(held_out_scores(refit))
     ways = (exchanged, exchanged_of_other_units, turned_in_one, rescaled, turned_with_friction)

@@ -10,7 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.api.arguments import check_no_data
 from greybox_torch.api.check_result import CheckResult
+from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.data_warnings import all_warnings
 from greybox_torch.api.refused_tables import RefusedTable, found_and_expected
 from greybox_torch.checking.examine import examine
@@ -32,14 +34,15 @@ from greybox_torch.systems.user_code import users_code
 
 
 @names_checked
-def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None = None) -> CheckResult:
+def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: Data | None = None) -> CheckResult:
     """Look for what is wrong with a model: names, code that cannot be compiled, units, and what moves no output.
 
     Equations are read and run on made-up values; nothing is estimated.
 
     Args:
         model: an object, its class, or a name as :func:`greybox_torch.load_model` takes it.
-        data: a data set whose channels, parameters, start states, beliefs, settings and limits are to be compared with the model's.
+        data: a data set whose channels, parameters, start states, beliefs, settings and limits are to be compared with the model's;
+            or its card by path.
 
     Raises:
         UserError: no such model, or a file that raises when it is run. What is wrong with the model itself is among the findings.
@@ -58,6 +61,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
         subtracts `u.v`, in V, and `x.y / p.T`, in V/s
     """
     name, given = _given(model)
+    data = None if data is None else check_data(data)
     with users_code(_file(given), f"model {name}", "checking it"):
         examined = examine(given, None if data is None else partial(_starts, data))
         findings, values = list(examined.findings), dict[str, float]()
@@ -80,6 +84,7 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: DataSet | None =
 
 
 def _given(model: Any) -> tuple[str, GreyBoxModel | type[GreyBoxModel]]:
+    check_no_data(model)
     if isinstance(model, str):
         return Path(model).name, model_class(model)
     held = model if isinstance(model, type | GreyBoxModel) else getattr(model, "model", None)

@@ -18,7 +18,7 @@ from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.api.simulate import SimulationResult
-from greybox_torch.api.start_states import Fits, begun_with, better_before, own_fits
+from greybox_torch.api.start_states import Fits, better_before, first_tenth, own_fits
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.evaluation import evaluated
@@ -76,7 +76,7 @@ class ComparisonResult(Result):
     def show(self, console: Console) -> None:
         console.print(Text(self.data.name, style="bold"))
         print_scores(console, self.data, self._scores)
-        for line in begun_with(self.runs):
+        for line in first_tenth(self.runs):
             console.print(Text(line), soft_wrap=True)
         for line in self.warnings:
             console.print(Text(line, style="yellow"), soft_wrap=True)
@@ -95,7 +95,7 @@ class ComparisonResult(Result):
         return notebook.page(
             self.data.name,
             notebook.table(*score_table(self.data, self._scores)),
-            *(notebook.sentence(line) for line in (*begun_with(self.runs), *self.warnings)),
+            *(notebook.sentence(line) for line in (*first_tenth(self.runs), *self.warnings)),
             notebook.picture(self.plot(), "outputs over time, measured and simulated by each model"),
         )
 
@@ -130,7 +130,7 @@ def compare(
         ``compare(data, {"start": Motor(), "fit": fitted, "earlier": "results/model"}).plot()``
     """
     device, precision = check_device(device), check_precision(precision)
-    if isinstance(models, DataSet):
+    if isinstance(models, DataSet | str | PathLike):
         raise ArgumentError("models", Kind.of(models), 'expected the data first: compare(data, {"start": Motor()})')
     data = check_data(data)
     if not isinstance(models, Mapping) or not models:

@@ -83,7 +83,7 @@ def _unlimited_rates(found: DesignResult) -> Iterator[str]:
         values = found.set_points[signal] if name in found.follows else found.inputs[name]
         step = float(found.time[1] - found.time[0])
         change = float(np.abs(np.diff(values)).max())
-        if np.isfinite(found.limits.commanded[name].rate) or change <= FASTER * step * _fastest(found.data, signal):
+        if np.isfinite(found.limits.commanded[name].rate) or change <= FASTER * _fastest(found.data, signal, step):
             continue
         unit = found.data.channels[signal].unit
         yield (
@@ -94,10 +94,17 @@ def _unlimited_rates(found: DesignResult) -> Iterator[str]:
         )
 
 
-def _fastest(data: DataSet, name: str) -> float:
-    """The fastest change of a channel from one sample to the next in any recording, in its unit per second."""
-    rates = [np.abs(np.diff(r.signals[name]) / np.diff(r.time)) for r in data.recordings]
-    return max(float(rate[np.isfinite(rate)].max(initial=0.0)) for rate in rates)
+def _fastest(data: DataSet, name: str, step: float) -> float:
+    """The largest change of a channel within ``step`` seconds in any recording, in its unit: of noise and counts it grows less than by the
+    time. Where samples are farther apart, a share of that from one to the next.
+    """
+    changes = []
+    for recording in data.recordings:
+        apart = max(min(round(step / recording.sample_time), len(recording.time) - 1), 1)
+        values, time = recording.signals[name], recording.time
+        change = np.abs(values[apart:] - values[:-apart]) * np.minimum(step / (time[apart:] - time[:-apart]), 1.0)
+        changes.append(float(change[np.isfinite(change)].max(initial=0.0)))
+    return max(changes)
 
 
 def _in_the_way(found: DesignResult) -> Iterator[str]:

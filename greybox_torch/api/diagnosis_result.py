@@ -116,6 +116,11 @@ class DiagnosisResult(Result):
         return score_rows(self.data, verdict_scores(self.verdict))
 
     @property
+    def own_starts(self) -> str:
+        """The model in ``scores`` that estimation experiments are simulated by with the start states of the estimate; "" for none."""
+        return list(verdict_scores(self.verdict))[-1] if self.verdict.complete else ""
+
+    @property
     def effect_rows(self) -> list[dict[str, Any]]:
         """A row for every parameter of every effect."""
         return [
@@ -210,6 +215,7 @@ class DiagnosisResult(Result):
             own_weights=digest(self.given),
             dataset=self.data.sha256,
             figures=self.content(Path())["fit"],
+            own_starts=self.own_starts,
         )
 
     def _about(self, folder: Path) -> About:

@@ -77,7 +77,7 @@ def export(
         to: "c" (a header, a source, an example), "torch" (a module), "fmu" (FMI 2.0 and 3.0, co-simulation);
             "mjcf" or "urdf" for the effects alone, to be added to a simulation of the machine that you already have:
             attributes of joints, tendons and actuators, and a list of what the format cannot express.
-        data: recordings that set the integration step, and say how inputs change between samples.
+        data: recordings that set the integration step, and say how inputs change between samples; or their card by path.
         name: of functions and files; by default made from the model's.
         step: largest integration step in seconds; by default what ``data`` need, else the sample time that effects were found with.
 

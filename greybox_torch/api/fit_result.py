@@ -83,6 +83,11 @@ class FitResult(EstimatedModel):
         return {name: estimated_starts(self.estimation, e) for e, name in enumerate(names)}
 
     @property
+    def own_starts(self) -> str:
+        """The model in ``scores`` that estimation experiments are simulated by with the start states of the estimate."""
+        return self.stage
+
+    @property
     def status(self) -> str:
         """One word on how it ended: "converged", or what kept it from that."""
         return status(self.estimation.termination)
@@ -179,6 +184,7 @@ class FitResult(EstimatedModel):
             own_weights=digest(given),
             dataset=self.data.sha256,
             figures=scores_side_by_side(self._scores),
+            own_starts=self.own_starts,
         )
 
     def _profile_picture(self, name: str) -> bytes:

@@ -36,9 +36,10 @@ AS_GOOD = 1.2
 
 @dataclass(frozen=True)
 class Change:
-    """A channel by which another is read instead, by name, and how a reader is asked; ``factor`` by which its values are multiplied, −1
-    where its sign is turned, and ``factors`` by which those of single channels are; ``more`` is added to them then; ``only`` the recordings
-    that are changed, by name, all where it is empty.
+    """``read`` says, by channel, whose values it is to have instead, and ``question`` how a reader is asked.
+
+    The values are multiplied by ``factor``, −1 where a sign is turned, and by what ``factors`` has for the channel; ``more`` is added then.
+    ``only``: names of the recordings that are changed, all where it is empty.
     """
 
     read: Mapping[str, str]

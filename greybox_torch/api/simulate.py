@@ -19,7 +19,7 @@ from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json
 from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
-from greybox_torch.api.start_states import begun_with
+from greybox_torch.api.start_states import first_tenth
 from greybox_torch.data import DataSet
 from greybox_torch.data.steps import steps_of
 from greybox_torch.errors import NumericalError
@@ -125,7 +125,7 @@ class SimulationResult(Result):
         )
         console.print(Text(f"{self._title} {told}", style="bold"))
         print_scores(console, self.data, {self.name: self.run.comparison.scores})
-        for line in begun_with({self.name: self.run}):
+        for line in first_tenth({self.name: self.run}):
             console.print(Text(line), soft_wrap=True)
         print_substeps(console, self.run.substeps)
         for found in self.warnings:
@@ -142,7 +142,7 @@ class SimulationResult(Result):
 
     def _repr_html_(self) -> str:
         scores = {self.name: self.run.comparison.scores}
-        begun = begun_with({self.name: self.run})
+        begun = first_tenth({self.name: self.run})
         told = map(notebook.sentence, (*begun, *(f"warning: {found}." for found in self.warnings)))
         shown = notebook.picture(self.plot(), "simulated and measured outputs over time")
         return notebook.page(self._title, notebook.table(*score_table(self.data, scores)), *told, shown)

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from greybox_torch.api.free_runs import Runs
-from greybox_torch.checkpoint import Checkpoint, load_checkpoint
+from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.data import DataSet
+from greybox_torch.estimate.initial import BEGINNINGS
 
-FIRST_TENTH = (
-    "Each experiment is begun with start states estimated on its first tenth; `greybox fit` and `greybox diagnose` have those of their "
-    "estimate, so that their fits may differ."
-)
 LESS = 10.0
 """Points of % by which a fit has to be worse than with the model's own start states to be told."""
 
@@ -22,31 +19,31 @@ Fits = Mapping[tuple[str, str], float]
 """In %, by experiment and output."""
 
 
-def begun_with(runs: Runs) -> list[str]:
+def first_tenth(runs: Runs) -> list[str]:
     """How free runs begin, where that is estimated: a sentence, or none."""
-    return [FIRST_TENTH] if any(run.problem.initial_free.any() for run in runs.values()) else []
+    return [BEGINNINGS] if any(run.problem.initial_free.any() for run in runs.values()) else []
 
 
 def own_fits(given: Any, data: DataSet) -> Fits:
-    """The fits that a checkpoint, by path, or a result has of the same recordings; empty of a model, and of other recordings."""
+    """The fits that a checkpoint, by path, or a result has of the same estimation experiments with the start states of its estimate; empty
+    of a model, of other recordings, and where those were estimated on the first tenth, as after a training.
+    """
     if isinstance(given, str | PathLike):
-        return _saved(load_checkpoint(Path(given)), data)
-    rows: Sequence[Mapping[str, Any]] = getattr(given, "scores", ()) if getattr(given, "data", None) is data else ()
-    last = rows[-1]["model"] if rows else ""
-    return {(row["experiment"], row["output"]): row["fit"] for row in rows if row["model"] == last}
-
-
-def _saved(checkpoint: Checkpoint, data: DataSet) -> Fits:
-    if checkpoint.dataset != data.sha256:
+        checkpoint = load_checkpoint(Path(given))
+        own = [row | row[name] for row in checkpoint.figures if (name := checkpoint.own_starts) in row]
+        estimated_from = checkpoint.dataset
+    elif name := getattr(given, "own_starts", ""):
+        own = [row for row in given.scores if row["model"] == name]
+        estimated_from = given.data.sha256
+    else:
         return {}
-    fits = {}
-    for row in checkpoint.figures:
-        models = [
-            name for name, figures in row.items() if isinstance(figures, Mapping) and figures.get("fit") is not None
-        ]
-        if models:
-            fits[row["experiment"], row["output"]] = float(row[models[-1]]["fit"])
-    return fits
+    if estimated_from != data.sha256:
+        return {}
+    return {
+        (row["experiment"], row["output"]): float(fit)
+        for row in own
+        if row["role"] == "estimation" and (fit := row.get("fit")) is not None
+    }
 
 
 def better_before(runs: Runs, own: Mapping[str, Fits]) -> list[str]:

@@ -11,6 +11,7 @@ from greybox_torch.api.scores import Scores, print_scores, print_substeps, squar
 from greybox_torch.api.train_explained import print_explanation
 from greybox_torch.api.train_held_out import lost_choices, mostly_lost
 from greybox_torch.data import DataSet
+from greybox_torch.estimate.initial import BEGINNINGS
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.report.tables import print_table
 from greybox_torch.training import Explanation, Trained
@@ -21,10 +22,7 @@ MOST_LOST = (
     "Run `greybox diagnose` first, and train beside the model that it recommends."
 )
 
-REFIT = (
-    "refit: the physics alone, estimated on whole records with each output weighed by its spread. All are begun with start states from the "
-    "first tenth of each experiment, where `greybox fit` has those of its estimate, so that its fits may differ."
-)
+REFIT = f"refit: the physics alone, estimated on whole records with each output weighed by its spread. {BEGINNINGS}"
 
 
 def print_training(

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
-from greybox_torch.checking.coupling_signs import against_the_spring
+from greybox_torch.checking.coupling_signs import pushes_on
 from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails, told
@@ -108,6 +108,6 @@ def _run(
         found.append(never_finite(model, points, starts(model) if starts else [start_of(model, {})], source))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
-    found += [*heat_against_the_fall(model, points, source), *against_the_spring(model, points, source)]
+    found += [*heat_against_the_fall(model, points, source), *pushes_on(model, points, source)]
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

@@ -9,6 +9,7 @@ import torch
 from greybox_torch.checking.dimensions import dimension_of, known_dimension
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.points import Points
+from greybox_torch.checking.slopes import slopes
 from greybox_torch.checking.source import Source
 from greybox_torch.model import GreyBoxModel
 
@@ -31,8 +32,8 @@ def heat_against_the_fall(model: GreyBoxModel, points: Points, source: Source) -
         for kind, row, name, leaf in warm:
             if name == state.name:
                 continue
-            (slope,) = torch.autograd.grad(rate.sum(), (leaf,), retain_graph=True, allow_unused=True)
-            if slope is not None and bool((slope[row] < 0.0).all()):
+            (slope,) = slopes(rate, (leaf,))
+            if bool((slope[row] < 0.0).all()):
                 yield Finding(
                     "note",
                     "influence",

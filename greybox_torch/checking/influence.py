@@ -8,6 +8,7 @@ import numpy as np
 import torch
 
 from greybox_torch.checking.points import Points
+from greybox_torch.checking.slopes import slopes
 from greybox_torch.model import GreyBoxModel
 
 KINDS = ("state", "input", "parameter", "port")
@@ -57,13 +58,7 @@ def _row(value: torch.Tensor, count: int) -> torch.Tensor:
 
 def _depends(value: torch.Tensor, leaves: tuple[torch.Tensor, ...]) -> tuple[np.ndarray, ...]:
     """For every leaf (n, B), which of its rows (n,) the value (B,) has a slope in at any point."""
-    if not value.requires_grad:
-        return tuple(np.zeros(len(leaf), dtype=bool) for leaf in leaves)
-    found = torch.autograd.grad(value.sum(), leaves, retain_graph=True, allow_unused=True)
-    return tuple(
-        np.zeros(len(leaf), dtype=bool) if g is None else ((g != 0) & torch.isfinite(g)).any(1).numpy()
-        for g, leaf in zip(found, leaves, strict=True)
-    )
+    return tuple(((slope != 0) & torch.isfinite(slope)).any(1).numpy() for slope in slopes(value, leaves))
 
 
 def _reach(rates: np.ndarray, outputs: np.ndarray) -> np.ndarray:

@@ -12,7 +12,10 @@ from greybox_torch.codegen.expression import Graph
 UnitOf = Callable[[str, int], str]
 """The declared unit of a leaf, by its kind and number."""
 
-_FACTOR = re.compile(r"([^\W\d_]+|°|%|Ω)(?:\^(\d+))?")
+_FACTOR = re.compile(r"(°?[^\W\d_]+|°)(?:\^(\d+))?")
+_NUMBERS = ("1", "-", "–", "%")
+"""Of plain numbers, which a product is told without."""
+_TIMES = re.compile(r"[*·⋅]")
 _UNITS = re.compile(r"([^/()]+)(?:/(?:\(([^/()]+)\)|([^/()]+)))?")
 
 
@@ -52,8 +55,8 @@ def _factors(graph: Graph, unit_of: UnitOf, node: int, power: int) -> Counter[st
 
 
 def _read(unit: str, power: int) -> Counter[str] | None:
-    """Of a unit such as "N m/(rad/s)" or "1/s"; None of one that is written otherwise."""
-    found = _UNITS.fullmatch(unit.strip())
+    """Of a unit such as "N m/(V A)", "N*m/V" or "1/s"; None of one that is written otherwise."""
+    found = _UNITS.fullmatch(_TIMES.sub(" ", unit.replace("**", "^")).strip())
     if found is None:
         return None
     powers: Counter[str] = Counter()
@@ -62,6 +65,6 @@ def _read(unit: str, power: int) -> Counter[str] | None:
             factor = _FACTOR.fullmatch(one)
             if factor is not None:
                 powers[factor[1]] += sign * int(factor[2] or 1)
-            elif one != "1":
+            elif one not in _NUMBERS:
                 return None
     return powers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from functools import partial
 
 from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of, known_dimension
@@ -60,11 +60,13 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
     for i, port in enumerate(model.ports):
         force = leaves[graph.leaf("f", i)] = _force(port, of_signal)
         units[names.of("f", i)] = "" if force is None else str(force)
+    of_rates = {None if (of := known_dimension(s.unit)) is None else of.times(SECOND, -1) for s in model.states}
     roots = [*traced.rates.values(), *traced.outputs.values()]
     known = dimensions(graph, roots, leaves, text, found.setdefault, in_units)
     for node, what in found.items():
         write = (
-            _per_unit_of(traced, node, known, names) or f"{REMEDY}; the units are {_used(traced, node, names, units)}"
+            _per_unit_of(traced, node, known, names, of_rates)
+            or f"{REMEDY}; the units are {_used(traced, node, names, units)}"
         )
         yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
     for name, node in traced.rates.items():
@@ -128,14 +130,20 @@ def _force(port: object, of_signal: dict[tuple[str, str], Dimension | None]) -> 
     return WATT.times(speed, -1) if speed is not None and speed in _FLOWS else None
 
 
-def _per_unit_of(traced: Traced, node: int, known: Known, names: Names) -> str | None:
-    """What to write where a port's force is added to an equation that is divided by a mass or the like; None elsewhere."""
+def _per_unit_of(
+    traced: Traced, node: int, known: Known, names: Names, of_rates: Collection[Dimension | None]
+) -> str | None:
+    """What to write where a port's force is added to an equation that is divided by a mass or the like; None elsewhere, as where the sum
+    is not in the unit ``of_rates``: that is of something else, and a parameter that makes it fit is in no sensible unit.
+    """
     graph = traced.graph
     ports = [
         a for a in graph.nodes[node].arguments if graph.nodes[a].operation == "leaf" and graph.nodes[a].leaf == "f"
     ]
     others = [known.get(a) for a in graph.nodes[node].arguments if a not in ports]
-    if len(ports) != 1 or len(others) != 1 or others[0] is None or (force := known.get(ports[0])) is None:
+    if len(ports) != 1 or len(others) != 1 or others[0] is None or others[0] not in of_rates:
+        return None
+    if (force := known.get(ports[0])) is None:
         return None
     port = names.of("f", int(graph.nodes[ports[0]].value))
     return (

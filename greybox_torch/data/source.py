@@ -135,9 +135,16 @@ def _check_in_common(first: Table, other: Table, time: str) -> None:
     """Raises UserError where no sample of the first file lies within the time of another: all that is taken from that would be missing."""
     stamps, own = first.columns[time], other.columns[time]
     if len(stamps) and len(own) and not ((stamps >= own[0]) & (stamps <= own[-1])).any():
+        apart = stamps[-1] < own[0] or stamps[0] > own[-1]
+        told = "they have no time in common" if apart else f"no sample of {first.path.name} lies within"
+        expected = (
+            "files of one run"
+            if apart
+            else "files of one run, first the one with the most samples in their common time,"
+        )
         raise UserError(
-            f'{other.path}, column "{time}": {_span(other, time)}, and {first.path.name} {_span(first, time)}: they have no time in '
-            'common; expected files of one run for join = "time"'
+            f'{other.path}, column "{time}": {_span(other, time)}, and {first.path.name} {_span(first, time)}: {told}; expected {expected} '
+            'for join = "time"'
         )
 
 

@@ -15,7 +15,7 @@ from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_furth
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
-from greybox_torch.drafting.runs import Run, apart, last_complete, names_of, runs_of
+from greybox_torch.drafting.runs import Run, apart, fullest, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
@@ -71,9 +71,10 @@ def draft_card(
     missing = [f"[channels] {draft.name}: {draft.remark}" for draft in first.table.channels if draft.column is None]
     if missing:  # what there is to them may be in a column that could not be read, or in another file
         missing += [fault for file in first.files for fault in _faults(file)]
-        missing += filter(None, [apart(runs)])
-    if model is not None and not apart(runs):
+    parted = apart(runs) if model is not None else ""
+    if model is not None and not (parted and missing):  # what the first lacks goes for all that are to be joined
         missing += of_further_runs(runs)
+    missing += filter(None, [parted])
     missing += to_be_mended(runs)
     missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
     if first.clock.column is None and first.clock.sample_time is None:
@@ -139,13 +140,13 @@ def _faults(file: Recorded) -> list[str]:
 
 def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
     lines: list[str] = []
-    names, last = names_of(runs), last_complete(runs)
+    names, full = names_of(runs), fullest(runs)
     open_ones = {draft.name for draft in runs[0].table.channels if draft.column is None}
     for k, run in enumerate(runs):
         every, guessed = own_columns(run, runs[0]), guessed_units(run, runs[0])
         own = {name: entry for name, entry in every.items() if name not in open_ones}
         later = {name: entry for name, entry in every.items() if name in open_ones}
-        alone, samples = len(runs) == 1, run.whole.samples
+        alone, samples = full == [k], run.whole.samples  # then nothing else can be estimated from
         if alone and samples >= FEW:
             cut = 3 * samples // 4
             for name, role, rows in (
@@ -154,7 +155,7 @@ def _experiments(runs: Sequence[Run], folder: Path) -> list[str]:
             ):
                 lines += _experiment(f"{names[k]}, {name}", run, role, folder, own, later, guessed, rows)
             continue
-        role = "validation" if k == last and not alone else "estimation"
+        role = "validation" if k == full[-1] and not alone else "estimation"
         lines += _experiment(names[k], run, role, folder, own, later, guessed, None)
     return lines
 

@@ -84,7 +84,8 @@ def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Ru
 
 def apart(runs: Sequence[Run]) -> str:
     """What to do where files that were not joined have different channels of the model, of which none can be simulated; else ""."""
-    first, *others = [run for run in runs if len(run.signals) != len(run.table.channels)] or runs[:1]
+    maybe_whole = [run for run in runs if run.complete or len(run.signals) == len(run.table.channels)]
+    first, *others = [run for run in runs if run not in maybe_whole] or runs[:1]
     for run in others:
         if run.channels - first.channels or (run.clock.column is not None and not run.channels):
             names = [one.files[0].path.name for one in (first, run)]
@@ -95,10 +96,10 @@ def apart(runs: Sequence[Run]) -> str:
     return ""
 
 
-def last_complete(runs: Sequence[Run]) -> int:
-    """The last run with as many channels as any: what results can be judged on."""
+def fullest(runs: Sequence[Run]) -> list[int]:
+    """The runs with as many channels as any: what results can be judged on. The others may have to be left out."""
     most = max(len(run.channels) for run in runs)
-    return max(k for k, run in enumerate(runs) if len(run.channels) == most)
+    return [k for k, run in enumerate(runs) if len(run.channels) == most]
 
 
 def names_of(runs: Sequence[Run]) -> list[str]:

@@ -17,6 +17,13 @@ from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows
 
+BEGINNINGS = (
+    "Free runs are begun with start states estimated on the first tenth of each experiment; in `greybox fit` and `greybox diagnose`, "
+    "re-estimated models begin estimation experiments with the start states of their estimate, so that fits may differ. "
+    "Start states that the card fixes are as it has them."
+)
+"""How free runs begin, for below a table of their fits."""
+
 SHORT = 6
 """Into how many windows the beginning of a record is cut for a first guess of its start states."""
 

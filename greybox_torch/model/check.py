@@ -6,6 +6,7 @@ import inspect
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -93,20 +94,33 @@ def _check_functions_of_ports(model: GreyBoxModel, values: Mapping[str, torch.Te
     p = Signals("parameter", {name: value.expand(BATCHES[0]) for name, value in values.items()})
     for port in model.ports:
         for name, signal in port.signals.items():
+            place = f"port '{port.name}', {name}"
             try:
-                value_of(signal, x, u, p)
+                value = value_of(signal, x, u, p)
             except Exception as error:
                 said = str(error) if isinstance(error, UserError) else f"raised {type(error).__name__}: {error}"
-                found = f"port '{port.name}', {name}: {said}; expected a function (x, u, p) of what the model declares"
+                found = f"{place}: {said}; expected a function (x, u, p) of what the model declares"
                 raise EquationsError(found, _place_in(signal, error)) from None
+            if not _is_signal(value, BATCHES[0]):
+                shown = f" of shape {tuple(value.shape)}" if isinstance(value, torch.Tensor) else ""
+                returned = f"returns an object of type {type(value).__name__}{shown} for signals of shape {BATCHES[0]}"
+                raise EquationsError(f"{place}: {returned}; expected one number for each sample", _place_in(signal))
 
 
-def _place_in(function: object, error: Exception) -> tuple[str, int | None] | None:
-    """The file of a function, and its last line on the way to the error."""
+def _is_signal(value: object, batch: tuple[int, ...]) -> bool:
+    """Whether a value is a number for each sample, or one for all."""
+    if isinstance(value, torch.Tensor):
+        return tuple(value.shape) in ((), batch)
+    return isinstance(value, Real)
+
+
+def _place_in(function: object, error: Exception | None = None) -> tuple[str, int | None] | None:
+    """The file of a function, and its last line on the way to the error; its first one without any."""
     code = getattr(function, "__code__", None)
     if code is None:
         return None
-    frames = [f for f in traceback.extract_tb(error.__traceback__) if f.filename == code.co_filename]
+    trace = None if error is None else error.__traceback__
+    frames = [f for f in traceback.extract_tb(trace) if f.filename == code.co_filename]
     return code.co_filename, frames[-1].lineno if frames else code.co_firstlineno
 
 

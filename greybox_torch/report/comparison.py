@@ -35,7 +35,8 @@ _TITLE = {0: 95, 1: 55}
 def plot_comparison(
     recording: Recording, outputs: list[Channel], simulated: Mapping[str, np.ndarray], legend: Mapping[str, str]
 ) -> Figure:
-    """One experiment: every output over the whole record, and in detail where the last model is worst; errors below.
+    """One experiment: every output over the whole record, and in detail where the last model is worst, of those that do not
+    leave the axes; errors below.
 
     Args:
         recording: the experiment, with what was measured.
@@ -69,7 +70,7 @@ def _plot_panel(figure: FigureBase, panel: Panel, outputs: list[Channel]) -> Non
         runs = {name: _followed(measured, values[:, k]) for name, values in simulated.items()}
         lost = any(np.isnan(values).any() for values in runs.values())
         within = _within(measured, runs)
-        name, last = list(runs.items())[-1]
+        name, last = list((within or runs).items())[-1]
         worst = _worst(measured, last)
         where = (
             "the simulation runs away"

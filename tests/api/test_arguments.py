@@ -42,7 +42,13 @@ from tests.api.motor import Motor
         (lambda m, d: gt.inspect("card.toml"), "card.toml: no such file"),
         (lambda m, d: gt.fit(d, m), "model: found an object of type DataSet, expected a model first, and the data second"),
         (lambda m, d: gt.compare({"m": m}, d), "models: found an object of type DataSet, expected the data first: compare("),
-        (lambda m, d: gt.evaluate(m, d), "data: found an object of type Motor, expected a DataSet first, as in evaluate("),
+        (lambda m, d: gt.evaluate(m, d), "data: found an object of type Motor, expected a DataSet first, or a card by path, as in"),
+        (lambda m, d: gt.simulate("a/dataset.toml", m), "model: found 'a/dataset.toml', expected a model first, and the data second"),
+        (lambda m, d: gt.train(Path("a.toml"), m), "model: found 'a.toml', expected a model first, and the data second"),
+        (lambda m, d: gt.check("a.toml", m), "model: found 'a.toml', expected a model first, and the data second"),
+        (lambda m, d: gt.check(d, m), "model: found an object of type DataSet, expected a model first, and the data second"),
+        (lambda m, d: gt.check(m, [d]), "data: found an object of type list, expected a DataSet, as load_dataset()"),
+        (lambda m, d: gt.compare({"m": m}, "a.toml"), "models: found an object of type str, expected the data first: compare("),
         (lambda m, d: gt.inspect(d, Motor), "model: found the class Motor, expected an object of it: Motor()"),
         (lambda m, d: gt.simulate(m, d, device="tpu"), "device: found 'tpu', expected \"cpu\", \"cuda\" or \"cuda:N\""),
         (lambda m, d: gt.simulate(m, d, precision="half"), "precision: found 'half', expected \"double\" or \"single\""),
@@ -68,7 +74,9 @@ def test_data_may_be_given_by_their_card(folder: Path) -> None:
         *gt.fit_many(Motor(), [card]),
         gt.inspect(card),
         gt.fit(Motor(), card),
+        gt.evaluate(card, model=Motor()),
     ]
+    assert gt.check(Motor(), card).to_dict() == gt.check(Motor(), gt.load_dataset(card)).to_dict()
     assert {one.data.name for one in results if not isinstance(one, Exception)} == {"Motor on the bench"}
 
 

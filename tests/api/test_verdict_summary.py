@@ -7,10 +7,11 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.api.verdict_summary import REFIT, SIZE, effect_table, moved_table, notes, which_refit
-from greybox_torch.diagnosis.begun import WITH_THE_ESTIMATE, begun
+from greybox_torch.diagnosis.begun import begun
 from greybox_torch.diagnosis.one_of import DECIDED_BY, Alternative, OneOf
 from greybox_torch.diagnosis.own_parameters import Estimate
 from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Left, NotTried
+from greybox_torch.estimate.initial import BEGINNINGS
 from greybox_torch.estimate.notes import told_at_bound, told_law_at_bound
 from greybox_torch.report.sections.effects import Effects
 from greybox_torch.report.sections.headline import Headline
@@ -243,5 +244,5 @@ def test_parameters_that_are_determined_together_alone_are_told() -> None:
 def test_how_the_free_runs_of_a_verdict_begin_is_said() -> None:
     """Seen: 98.1 % in the table, 53.9 % of `compare` with the same model, and the reason in neither."""
     one = verdict()
-    assert begun(one) == WITH_THE_ESTIMATE and begun(replace(one, complete=False)) == ""
+    assert begun(one) == BEGINNINGS and begun(replace(one, complete=False)) == ""
     assert "that the card fixes are as it has them" in begun(one)

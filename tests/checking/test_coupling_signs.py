@@ -1,4 +1,4 @@
-"""A coupling whose port pushes against the coupling's own force is told, with its line."""
+"""A coupling whose port drives its deflection on is told, with its line."""
 
 from __future__ import annotations
 
@@ -75,20 +75,100 @@ class TwistedAndTurned(Twisted):
     sign = -1.0
 
 
+class Joint(gt.GreyBoxModel):
+    """A pendulum that gravity tips over, on a joint without a force of its own; the arm that it hangs on may be driven."""
+
+    states = [gt.State("q", "rad"), gt.State("w", "rad/s")]
+    inputs = [gt.Input("torque", "N m")]
+    outputs = [gt.Output("q", "rad")]
+    parameters = [
+        gt.Parameter("J", 1.0, unit="kg m^2", lower=1e-6),
+        gt.Parameter("m_g_l", 9.0, unit="N m/rad", lower=0.0),
+    ]
+    ports = [gt.Coupling("joint", deflection="q", rate="w")]
+    sign = -1.0
+
+    def derivative(self, x, u, p, port):
+        return {"q": x.w, "w": (u.torque + p.m_g_l * x.q + self.sign * port.joint) / p.J}
+
+    def output(self, x, u, p):
+        return {"q": x.q}
+
+
+class JointTurned(Joint):
+    """The same, turned."""
+
+    sign = 1.0
+
+
+class Belt(gt.GreyBoxModel):
+    """Two masses on a belt without a law, one of which a spring at the other one's position pushes."""
+
+    states = [gt.State("q1", "m"), gt.State("v1", "m/s"), gt.State("q2", "m"), gt.State("v2", "m/s")]
+    inputs, outputs = [gt.Input("u", "N")], [gt.Output("q1", "m")]
+    parameters = [gt.Parameter("m", 1.0, unit="kg", lower=1e-6), gt.Parameter("k", 5.0, unit="N/m", lower=0.0)]
+    ports = [gt.Coupling("belt", deflection=lambda x, u, p: x.q1 - x.q2, rate=lambda x, u, p: x.v1 - x.v2)]
+    sign = 1.0
+
+    def derivative(self, x, u, p, port):
+        belt = self.sign * port.belt
+        return {"q1": x.v1, "v1": (u.u - p.k * x.q2 - belt) / p.m, "q2": x.v2, "v2": belt / p.m}
+
+    def output(self, x, u, p):
+        return {"q1": x.q1}
+
+
+class BeltTurned(Belt):
+    """The same, turned."""
+
+    sign = -1.0
+
+
+class Massless(gt.GreyBoxModel):
+    """A spring against a damper, without a mass."""
+
+    states = [gt.State("q", "m")]
+    inputs, outputs = [gt.Input("u", "N")], [gt.Output("q", "m")]
+    parameters = [gt.Parameter("d", 1.0, unit="N s/m", lower=1e-6)]
+    ports = [gt.Coupling("spring", deflection="q", rate=lambda x, u, p: u.u / p.d)]
+    sign = -1.0
+
+    def derivative(self, x, u, p, port):
+        return {"q": (u.u + self.sign * port.spring) / p.d}
+
+    def output(self, x, u, p):
+        return {"q": x.q}
+
+
+class MasslessTurned(Massless):
+    """The same, turned."""
+
+    sign = 1.0
+
+
 def told(model: gt.GreyBoxModel) -> list[str]:
-    found = [f for f in gt.check(model).findings if "own force" in f.found]
+    found = [f for f in gt.check(model).findings if "wrong sign" in f.found]
     assert all(f.level == "warning" and f.line for f in found)
     return [f.found for f in found]
 
 
 @pytest.mark.parametrize(
     ("right", "turned", "over"),
-    [(Axis, Turned, "deflection"), (Axis, DampedAlone, "rate"), (Twisted, TwistedAndTurned, "deflection")],
+    [
+        (Axis, Turned, "rate"),
+        (Axis, DampedAlone, "rate"),
+        (Twisted, TwistedAndTurned, "rate"),
+        (Joint, JointTurned, "rate"),
+        (Belt, BeltTurned, "rate"),
+        (Massless, MasslessTurned, "deflection"),
+    ],
 )
-def test_a_port_that_pushes_against_the_spring(
+def test_a_port_that_drives_the_deflection_on(
     right: type[gt.GreyBoxModel], turned: type[gt.GreyBoxModel], over: str
 ) -> None:
-    """Seen: "nothing is wrong", and every law found at the gear would have had the other sign."""
+    """Seen: "nothing is wrong", and every law found at the gear would have had the other sign; and of a joint without a force of its own,
+    or one softer than gravity, that its right sign was wrong.
+    """
     assert told(right()) == []
     (found,) = told(turned())
-    assert f"acts against the coupling's own force, which grows with the {over}" in found
+    assert f"a force there drives the {over} on" in found

@@ -139,14 +139,24 @@ def test_what_other_threads_draw_is_theirs(tmp_path: Path, machines: Path) -> No
     check_equations(made())
 
 
-def test_a_wrong_name_in_the_function_of_a_port_is_told_with_its_line(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("written", "told", "write"),
+    [
+        ("x.mtr / 80", "the equations ask for the state 'mtr' (did you", "a function (x, u, p) of what the model declares"),
+        ("None", "returns an object of type NoneType for signals of shape (3,)", "one number for each sample"),
+        ("x.motor.mean(0, True)", "returns an object of type Tensor of shape (1,)", "one number for each sample"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_in_the_function_of_a_port_is_told_with_its_line(
+    tmp_path: Path, written: str, told: str, write: str
+) -> None:
     """Seen: no line, and a list of torch functions as what to write; `fit` went on, and a diagnosis ended there."""
     lines = [
         "from greybox_torch import *",
         "class Rig(GreyBoxModel):",
         '    states, inputs, outputs = [State("motor", "rad"), State("speed", "rad/s")], [Input("u", "N m")], [Output("motor", "rad")]',
         '    ports = [Coupling("gear",',
-        "        deflection=lambda x, u, p: x.mtr / 80, rate=lambda x, u, p: x.speed)]",
+        f"        deflection=lambda x, u, p: {written}, rate=lambda x, u, p: x.speed)]",
         "    def derivative(self, x, u, p, port):",
         '        return {"motor": x.speed, "speed": u.u - x.motor - port.gear}',
         "    def output(self, x, u, p):",
@@ -154,7 +164,7 @@ def test_a_wrong_name_in_the_function_of_a_port_is_told_with_its_line(tmp_path: 
     ]
     (tmp_path / "rig.py").write_text("\n".join(lines))
     (error,) = [f for f in examine(model_class(f"{tmp_path / 'rig.py'}:Rig")).findings if f.level == "error"]
-    assert "port 'gear', deflection: the equations ask for the state 'mtr' (did you mean \"motor\"?)" in error.found
-    assert error.line == 5 and error.write == "a function (x, u, p) of what the model declares"
+    assert f"port 'gear', deflection: {told}" in error.found
+    assert error.line == 5 and error.write == write
     with pytest.raises(UserError, match=r"rig\.py, line 5: port 'gear', deflection"):
         check_equations(load_model(f"{tmp_path / 'rig.py'}:Rig"))

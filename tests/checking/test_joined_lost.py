@@ -66,6 +66,18 @@ def test_files_without_a_time_in_common(
     assert told in str(raised.value) and "they have no time in common; expected files of one run" in str(raised.value)
 
 
+def test_a_file_between_two_samples_of_the_first(tmp_path: Path) -> None:
+    """Seen: "they have no time in common", of 130 to 139.9 s within 0 to 5940 s."""
+    for name, column, stamps in (("a.csv", "u", 60.0 * np.arange(100)), ("b.csv", "y", 130 + 0.1 * np.arange(100))):
+        np.savetxt(tmp_path / name, np.column_stack([stamps, stamps]), "%.6g", ",", header=f"t,{column}", comments="")
+    (tmp_path / "dataset.toml").write_text(
+        'time = "t"\n[channels]\nu = { column = "u" }\ny = { column = "y" }\n[[experiment]]\nname = "A"\nfile = ["a.csv", "b.csv"]\n'
+        'join = "time"\n'
+    )
+    with pytest.raises(gt.UserError, match=r"from 0 to 5940: no sample of a\.csv lies within; .*the most samples"):
+        gt.load_dataset(tmp_path / "dataset.toml")
+
+
 def test_rows_that_a_joined_file_does_not_reach_are_told_with_that_file(tmp_path: Path) -> None:
     for name, column, count in (("a.csv", "u", 120), ("b.csv", "y", 50)):
         rows = np.column_stack([0.1 * np.arange(count), np.sin(np.arange(count))])

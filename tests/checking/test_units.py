@@ -41,7 +41,14 @@ def test_the_force_at_a_body_has_a_unit_where_its_product_with_the_speed_is_powe
 
 @pytest.mark.parametrize(
     ("unit", "told"),
-    [("N m/V", "N m A/V"), ("N m/(rad/s)", "A m^2 kg/s"), ("N m", "N m A"), ("V s/rad", "N m")],
+    [
+        ("N m/V", "N m A/V"),
+        ("N*m/V", "N m A/V"),
+        ("W/°C", "W A/°C"),
+        ("N m/(rad/s)", "A m^2 kg/s"),
+        ("N m", "N m A"),
+        ("V s/rad", "N m"),
+    ],
 )
 def test_a_product_is_told_in_the_units_of_its_factors(tmp_path: Path, unit: str, told: str) -> None:
     """Seen: `p.k_t * u.current`, in A^2 s."""
@@ -49,3 +56,19 @@ def test_a_product_is_told_in_the_units_of_its_factors(tmp_path: Path, unit: str
     (tmp_path / "hoop.py").write_text(text)
     found = " ".join(f.found for f in examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings)
     assert f"`p.k * u.u`, in {told}" in found
+
+
+@pytest.mark.parametrize("unit", ["-", "1", "%"])
+def test_a_product_with_a_number_is_told_so_too_and_not_as_an_equation_that_is_divided(
+    tmp_path: Path, unit: str
+) -> None:
+    """Seen: "in A^2 s/(m^2 kg)"; "`port.r` divided by the parameter in m^2 kg/(A^2 s^3) that the equation is divided by"."""
+    text = HOOP.replace('Input("u", "-")', 'Input("u", "A")').replace('"V/s"', '"N m/V"').replace('"V"', '"rad/s"')
+    text = text.replace(
+        "parameters = [", f'parameters = [Parameter("J", 1.0, unit="kg m^2"), Parameter("n", 80.0, unit="{unit}"), '
+    )
+    text = text.replace("p.k * u.u - p.b * x.speed + port.hoop", "(p.n * p.k * u.u + port.hoop) / p.J - p.b * x.speed")
+    (tmp_path / "hoop.py").write_text(text)
+    (finding,) = [f for f in examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings if "`port.hoop`" in f.found]
+    assert "`p.n * p.k * u.u`, in N m A/V, and `port.hoop`, in N m" in finding.found
+    assert "divided by the parameter" not in finding.write and "p.k [N m/V]" in finding.write

@@ -144,10 +144,10 @@ def test_how_free_runs_begin_is_said_and_where_the_estimate_began_far_better(
     data = gt.load_dataset(folder / "dataset.toml")
     place = {"experiment": "Steps", "role": "estimation", "output": "speed"}
     figures = [place | {"start": {"fit": 100.0, "rmse": 0.0}, "refit": {"fit": own, "rmse": 1.0}}]
-    other = saved(folder, "other", 0.1, figures=figures, dataset="of other recordings")
-    path = saved(folder, "own", 0.1 if told else 0.02, figures=figures, dataset=data.sha256)
+    other = saved(folder, "other", 0.1, figures=figures, dataset="of other recordings", own_starts="refit")
+    path = saved(folder, "own", 0.1 if told else 0.02, figures=figures, dataset=data.sha256, own_starts="refit")
     for line in ("compare", "simulate"):
-        assert "begun with start states estimated on its first tenth" in greybox(line, folder).stdout
+        assert "begun with start states estimated on the first tenth" in greybox(line, folder).stdout
     warnings = of("compare", folder, path, other)["warnings"]
     assert len(warnings) == told
     assert all(w.startswith("own: speed of 'Steps' has a fit of ") and f"and of {own} %" in w for w in warnings)

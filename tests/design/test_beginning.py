@@ -12,7 +12,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.design_files import CARD
-from greybox_torch.api.design_notes import _beginning, design_notes
+from greybox_torch.api.design_notes import _beginning, _fastest, design_notes
 from greybox_torch.data.card import read_card
 from greybox_torch.errors import UserError
 from greybox_torch.experiment_design.approach import begun_at, begun_there
@@ -77,6 +77,15 @@ def test_changes_that_nothing_limits_are_told(undecided) -> None:
     (note,) = told(data)
     assert "voltage changes: here by" in note and "voltage = { rate = … }" in note
     assert not told(data, rate=10.0) and not told(undecided.data), "recorded in steps of that size"
+
+
+def test_the_fastest_change_is_over_the_time_between_samples_of_the_design() -> None:
+    """Seen: noise of 0.1 from one sample to the next, 1 ms later, taken for a rate of 100 per second over 0.1 s."""
+    noise = np.where(np.arange(1000) % 2, 0.05, -0.05)
+    data = gt.DataSet([gt.Recording.from_arrays("a", {"u": noise}, sample_time=0.001, role="estimation")])
+    assert _fastest(data, "u", 0.1) <= 0.1 and _fastest(data, "u", 0.001) == pytest.approx(0.1)
+    ramp = gt.DataSet([gt.Recording.from_arrays("a", {"u": np.arange(100.0)}, sample_time=0.5, role="estimation")])
+    assert _fastest(ramp, "u", 2.0) == pytest.approx(4.0) and _fastest(ramp, "u", 0.1) == pytest.approx(0.2)
 
 
 def test_a_start_that_is_asked_for(undecided) -> None:

@@ -150,5 +150,30 @@ def test_columns_of_channels_that_are_to_be_filled_in_are_a_remark(tmp_path: Pat
     third(tmp_path / "b.csv")
     text = gt.card([tmp_path / "a.txt", tmp_path / "b.csv"], Both()).text
     assert '# angle = { column = "…"' in text and '# and, once [channels] has them: angle = "angle"' in text
-    (written,) = [line for line in text.splitlines() if line.startswith("columns")]
+    (written,) = {line for line in text.splitlines() if line.startswith("columns")}
     assert "angle" not in written
+
+
+def test_what_parts_lack_is_open_also_behind_a_complete_file(tmp_path: Path) -> None:
+    """Seen: nothing open, of two files that could not be simulated and whose times are in columns of two names."""
+    third(tmp_path / "whole.csv")
+    first(tmp_path / "a.txt")
+    third(tmp_path / "n.csv", "angle,current,spare_current")
+    card = gt.card([tmp_path / name for name in ("whole.csv", "a.txt", "n.csv")], Both())
+    assert any(line.startswith('[[experiment]] "a", angle: no column fits') for line in card.open)
+    second(tmp_path / "b.txt")  # of which no column is a channel
+    card = gt.card([tmp_path / name for name in ("whole.csv", "a.txt", "b.txt")], Both())
+    assert any(line.startswith('[[experiment]] "a", angle: no column fits') for line in card.open)
+    assert 'file = ["a.txt", "b.txt"], join = "time"' in card.open[-1]
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_the_only_complete_file_is_divided_and_not_proposed_to_be_joined(tmp_path: Path, order: int) -> None:
+    """Seen: the one run that a fit can be made from had the role "validation"; with a column too many it was to be joined."""
+    first(tmp_path / "a.txt")
+    columns = np.column_stack([0.002 * np.arange(N), *(np.sin(np.arange(N) + k) for k in range(4))])
+    names = "t,valve,position,angle,temperature"
+    np.savetxt(tmp_path / "b.csv", columns, "%.6g", ",", header=names, comments="")
+    card = gt.card([tmp_path / "a.txt", tmp_path / "b.csv"][::order], Both())
+    assert not any("if they are of one run" in line for line in card.open)
+    assert 'name = "b, first part"' in card.text and 'name = "b, last part"' in card.text

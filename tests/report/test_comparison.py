@@ -18,7 +18,7 @@ def detail(**simulated: np.ndarray) -> tuple[str, float, float]:
     run = Recording.from_arrays("Run", {"speed": MEASURED}, sample_time=0.01, role="validation")
     outputs = {name: values[:, None] for name, values in simulated.items()}
     figure = plot_comparison(run, [Channel("speed", "rad/s")], outputs, {name: name for name in outputs})
-    titled = next(axes for axes in figure.axes if axes.get_title())
+    titled = next(axes for axes in figure.axes if axes.get_title().startswith("where"))
     shown = np.asarray(titled.lines[0].get_xdata(), dtype=float)
     return titled.get_title(), shown[0], shown[-1]
 
@@ -56,6 +56,12 @@ def test_a_model_that_is_far_off_leaves_the_axes_of_the_others() -> None:
     figure = drawn(start=MEASURED - 3.0 * TIME, **near)
     assert all(high - low < 3.5 for low, high in (axes.get_ylim() for axes in figure.axes))
     assert figure.axes[0].get_title() == "start leaves the axes"
+    away = {"fit": near["fit"], "start": MEASURED - 3.0 * TIME}
+    told, begin, end = detail(**away)
+    assert told == "where the error of fit is largest" and begin < 2.0 < end, (
+        "seen: of start, beyond axes kept to the other"
+    )
+    assert drawn(**away).axes[0].get_title() == "start leaves the axes"
     plain = drawn(**near)
     assert not plain.axes[0].get_title() and plain.axes[1].get_ylim()[0] < -1.0
     low, _ = drawn(start=MEASURED - 3.0 * TIME).axes[0].get_ylim()

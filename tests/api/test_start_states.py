@@ -1,0 +1,46 @@
+"""The fits that a model has with the start states of its own estimate, which a comparison from the first tenth is held against."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import greybox_torch as gt
+from greybox_torch.api.start_states import own_fits
+from greybox_torch.checkpoint import load_checkpoint, save_checkpoint
+from tests.api.motor import Motor
+
+
+def test_fits_of_a_result_are_of_the_same_samples_wherever_they_are_from(folder: Path, data: gt.DataSet) -> None:
+    """Seen: none of a fit whose data set had been read anew; fits of validation experiments, which begin on the first tenth."""
+    fit = gt.fit(Motor(), data)
+    own = {
+        (row["experiment"], row["output"]): row["fit"]
+        for row in fit.scores
+        if row["model"] == "refit" and row["role"] == "estimation"
+    }
+    again = gt.DataSet(list(data.recordings), name="again")
+    assert list(own) == [("Steps", "speed"), ("More steps", "speed")]
+    assert own_fits(fit, data) == own_fits(fit, again) == own
+    fit.save(folder / "fit")
+    assert own_fits(folder / "fit", again) == own
+    assert own_fits(fit, gt.DataSet(list(data.recordings[:2]))) == own_fits(Motor(), data) == {}
+
+
+def test_of_a_training_there_are_none(folder: Path, data: gt.DataSet) -> None:
+    """Seen: the fits of the law in the network's place beside a hybrid; both begin on the first tenth, as a comparison does."""
+    options = {"net": "residual", "port": "actuator", "network": {"units": 2}}
+    found = gt.train(Motor(), data, settings=gt.TrainingSettings(epochs=1), explain=False, **options)
+    found.save(folder / "trained")
+    assert own_fits(found, data) == own_fits(folder / "trained", data) == {}
+
+
+def test_no_fit_where_the_estimate_itself_has_none(folder: Path, data: gt.DataSet) -> None:
+    """Seen: that of the next model in the row."""
+    place = {"experiment": "Steps", "role": "estimation", "output": "speed"}
+    figures = [place | {"start": {"fit": 90.0, "rmse": 1.0}, "refit": {"fit": None, "rmse": None}}]
+    fit = gt.fit(Motor(), data)
+    fit.save(folder / "fit")
+    held = load_checkpoint(folder / "fit")
+    save_checkpoint(folder / "none", replace(held, figures=figures))
+    assert own_fits(folder / "none", data) == {}
