@@ -12,6 +12,7 @@ from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.confirm import shown_by_free_runs as module
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
@@ -132,6 +133,7 @@ def test_asked_where_nothing_else_is_a_finding(monkeypatch, small) -> None:
         complete=True,
         left=None,
         removed=0.5,
+        schedule=Schedule(),
     )
     monkeypatch.setattr(pipeline, "sizes", lambda *_: {FRICTION.prefix: 0.12, BIAS.prefix: 0.12})
     told_of = [Effect("motor", name, 0.9, (), "", {}, 0.0, (), None) for name in ("friction", "bias")]
