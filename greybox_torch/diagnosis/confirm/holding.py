@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from functools import partial
 
+import numpy as np
+
 from greybox_torch.diagnosis.confirm.beyond_free_runs import said_of_windows
 from greybox_torch.diagnosis.confirm.far_better import Standing, far_better, judged_anew
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut, gain
@@ -12,7 +14,7 @@ from greybox_torch.diagnosis.confirm.joint_deviation import within_one_deviation
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.not_asked import without_what_free_runs_do_not_need
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
-from greybox_torch.diagnosis.confirm.same_everywhere import CHANCE, CHANCE_FAR_ABOVE, drifts
+from greybox_torch.diagnosis.confirm.same_everywhere import CHANCE, CHANCE_FAR_ABOVE, drifts, is_offset
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
 from greybox_torch.diagnosis.confirm.standing import sizes
 from greybox_torch.diagnosis.confirm.take_back import take_back_weakest
@@ -28,7 +30,6 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import or_else, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment
-from greybox_torch.mechanisms.forces import ConstantBias
 
 Judged = tuple[SearchState, Mapping[str, Gain], Judgement, tuple[str, ...], bool]
 """What is left of a state, its gains, its free runs, what a reader has to know of it, and whether there was time to judge it."""
@@ -190,10 +191,9 @@ def _within_disturbances(study: Study, state: SearchState, judged: Judgement) ->
 def _as_good_as_an_offset(state: SearchState, effect: Attachment) -> bool:
     """Whether an effect is an offset, or one gained nearly as much when it was taken."""
     done = state.step_of(effect.prefix)
-    if effect.mechanism.nature == ConstantBias.nature or done is None or done.taken is None:
-        return effect.mechanism.nature == ConstantBias.nature
-    offsets = (r for r in done.ranked if r.candidate.attachment.mechanism.nature == ConstantBias.nature)
-    return any(r.gain >= AS_GOOD * done.taken.gain for r in offsets)
+    least = np.inf if done is None or done.taken is None else AS_GOOD * done.taken.gain
+    as_good = () if done is None else (r for r in done.ranked if r.gain >= least)
+    return is_offset(effect.mechanism) or any(is_offset(r.candidate.attachment.mechanism) for r in as_good)
 
 
 def _undone(study: Study, state: SearchState, gains: Mapping[str, Gain], needed: Collection[str] = ()) -> str | None:

@@ -19,7 +19,7 @@ from greybox_torch.estimate.window_fit import fit_windows
 from greybox_torch.estimate.window_information import window_information
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.forces import ConstantBias
-from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
+from greybox_torch.mechanisms.mechanism import SHARE, Mechanism, Surroundings
 from greybox_torch.simulation.side_by_side import side_by_side
 from greybox_torch.simulation.simulator import Simulator
 
@@ -80,8 +80,13 @@ def drifts(
     chance: float = CHANCE,
 ) -> bool:
     """Whether an offset that windows show is another one in each of several experiments, and so a drift; arguments as above."""
-    asked = effect.mechanism.nature == ConstantBias.nature and len(problem.records.first) >= FEWEST
+    asked = is_offset(effect.mechanism) and len(problem.records.first) >= FEWEST
     return asked and not same_everywhere(found, problem, around, effect, budget, begun, chance)
+
+
+def is_offset(mechanism: Mechanism) -> bool:
+    """Whether a law is a constant one: of a force, an input or an output."""
+    return mechanism.nature == ConstantBias.nature
 
 
 def constant(sizes: np.ndarray, variances: np.ndarray, chance: float = CHANCE) -> bool:

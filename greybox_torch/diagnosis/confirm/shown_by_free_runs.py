@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from greybox_torch.diagnosis.confirm.held_out import Gain
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.confirm.longer_windows import constant_effect
+from greybox_torch.diagnosis.confirm.same_everywhere import is_offset
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.study import Study
@@ -47,7 +48,7 @@ def shown_by_free_runs(study: Study, state: SearchState, gains: Mapping[str, Gai
 
 def _may_be_a_disturbance(mechanism: Mechanism) -> bool:
     """Whether a law is an offset, or one where the motion has one direction."""
-    return mechanism.nature == ConstantBias.nature or ConstantBias.name in mechanism.generalises
+    return is_offset(mechanism) or ConstantBias.name in mechanism.generalises
 
 
 def _needed_in_each_of_several(judged: Judgement, settings: DiagnosisSettings) -> bool:
