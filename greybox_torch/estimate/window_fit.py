@@ -60,8 +60,9 @@ class WindowFit:
 
     def known(self, simulator: Simulator, starts: np.ndarray) -> WindowModel | None:
         """The pass at ``starts`` where they are its own, which need not be simulated again; None elsewhere."""
-        there = self.ended is not None and self.ended[0] is simulator and starts is self.starts
-        return self.ended[1] if self.ended is not None and there else None
+        if self.ended is None or self.ended[0] is not simulator or starts is not self.starts:
+            return None
+        return self.ended[1]
 
 
 def fit_windows(

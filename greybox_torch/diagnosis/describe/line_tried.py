@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache, partial
 
 import numpy as np
 
@@ -87,9 +88,10 @@ def line_tried(study: Study, fitted: Hypothesis, final: Final, attachment: Attac
     shapes = [np.stack(shape, axis=1) / SUM_OF_BUMPS for shape in ([centres], [np.ones_like(centres), centres])]
     if here is None or _clearly_bent(here, z, columns, shapes[-1]):
         return None
+    ends = cache(partial(_best_and_level, run, z, columns))
     for shape in shapes:
         found = _along(run, z, columns, shape)
-        if found is not None and found[1] <= (1.0 + HARDLY_MORE) * here.cost and _straight(run, z, columns, found[1]):
+        if found is not None and found[1] <= (1.0 + HARDLY_MORE) * here.cost and _straight(found[1], *ends()):
             point, cost, amounts = found
             own = {n: (at.values_by_name[n], float(v)) for n, v in zip(free, point, strict=False) if "." not in n}
             at_zero = 0.0 if len(amounts) == 1 else float(amounts[0])
@@ -98,11 +100,16 @@ def line_tried(study: Study, fitted: Hypothesis, final: Final, attachment: Attac
     return None
 
 
-def _straight(run: FreeRun, z: np.ndarray, columns: Sequence[int], cost: float) -> bool:
-    """Whether a line of such ``cost`` lacks hardly any of what the best curve of all its bumps removes beside one that is level."""
+def _best_and_level(run: FreeRun, z: np.ndarray, columns: Sequence[int]) -> tuple[float | None, float | None]:
+    """The costs of the best curve of all its bumps and of one that is level; None for one that cannot be simulated."""
     shapes = (np.eye(len(columns)), np.ones((len(columns), 1)))
     best, level = (_along(run, z, columns, shape) for shape in shapes)
-    return best is not None and (level is None or cost - best[1] <= STRAIGHT * (level[1] - best[1]))
+    return None if best is None else best[1], None if level is None else level[1]
+
+
+def _straight(cost: float, best: float | None, level: float | None) -> bool:
+    """Whether a line of such ``cost`` lacks hardly any of what the best curve removes beside one that is level."""
+    return best is not None and (level is None or cost - best <= STRAIGHT * (level - best))
 
 
 def _clearly_bent(here: Quadratic, z: np.ndarray, columns: Sequence[int], line: np.ndarray) -> bool:
@@ -126,7 +133,7 @@ def _along(
     """
     within = _within(z, columns, shape)
     others = np.setdiff1d(np.arange(len(z)), columns)
-    begun = np.concatenate([z[others], np.linalg.lstsq(shape, z[list(columns)], rcond=None)[0]])
+    begun = np.concatenate([z[others], least_squares(shape, z[list(columns)])])
 
     def evaluated(y: np.ndarray) -> Quadratic[None] | None:
         one = run.quadratic(within @ y)

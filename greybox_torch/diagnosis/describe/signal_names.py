@@ -32,8 +32,6 @@ def as_named(curve: Curve | None, model: GreyBoxModel, site: Port, own: tuple[st
         factor = replace(curve.factor, signal=signal_name(model, site, curve.factor.signal))
         curve = replace(curve, factor=factor)
     named = curve.signal == TURN or "@" in curve.signal or another
-    if curve.signal == "position" and not curve.unit:
-        curve = replace(curve, unit=_unit_of_position(model, site))
     return replace(curve, signal=signal_name(model, site, curve.signal)) if named else curve
 
 
