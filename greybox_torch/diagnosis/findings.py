@@ -26,7 +26,8 @@ from greybox_torch.diagnosis.confirm.less_than_is_left import less_than_is_left
 from greybox_torch.diagnosis.confirm.memory_instead import memory_instead
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
-from greybox_torch.diagnosis.confirm.standing import sizes, why_refinements
+from greybox_torch.diagnosis.confirm.sizes import sizes
+from greybox_torch.diagnosis.confirm.standing import why_refinements
 from greybox_torch.diagnosis.confirm.too_little import without_too_little
 from greybox_torch.diagnosis.confirm.when_stopped import found_first
 from greybox_torch.diagnosis.effect import Effect

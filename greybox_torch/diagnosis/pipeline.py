@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.common_gain import with_common_gain
 from greybox_torch.diagnosis.confirm.hardly_followed import hardly_followed
 from greybox_torch.diagnosis.confirm.shown_by_free_runs import shown_by_free_runs
-from greybox_torch.diagnosis.confirm.standing import sizes
+from greybox_torch.diagnosis.confirm.sizes import sizes
 from greybox_torch.diagnosis.confirm.unstable import no_free_run_follows
 from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe import report_data

@@ -16,7 +16,7 @@ from greybox_torch.diagnosis.confirm.not_asked import without_what_free_runs_do_
 from greybox_torch.diagnosis.confirm.refitted_laws import chosen_by_free_runs, refitted_laws
 from greybox_torch.diagnosis.confirm.same_everywhere import CHANCE, CHANCE_FAR_ABOVE, drifts, is_offset
 from greybox_torch.diagnosis.confirm.simpler_laws import simplified
-from greybox_torch.diagnosis.confirm.standing import sizes
+from greybox_torch.diagnosis.confirm.sizes import sizes
 from greybox_torch.diagnosis.confirm.take_back import take_back_weakest
 from greybox_torch.diagnosis.confirm.undone import not_undone
 from greybox_torch.diagnosis.confirm.with_one_more import with_one_more

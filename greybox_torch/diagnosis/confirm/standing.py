@@ -12,6 +12,7 @@ from functools import cache, partial
 import numpy as np
 
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
+from greybox_torch.diagnosis.confirm.sizes import sizes
 from greybox_torch.diagnosis.confirm.within_tolerance import is_timing, within_noise_of_sensor, within_tolerance
 from greybox_torch.diagnosis.effect import SO_LITTLE
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
@@ -41,23 +42,6 @@ WITHIN_TOLERANCE = (
 NOT_BORNE_OUT = "little, and the experiments that had no part in choosing it do not bear it out beyond chance"
 OF_MUCH = "most of the mismatch is left with all that was found, and any law takes up a part of that"
 """Why effects are refinements; another reason is ``SO_LITTLE``."""
-
-
-def sizes(study: Study, state: SearchState, gains: Mapping[str, Gain]) -> dict[str, float]:
-    """By effect, the share of the plain model's mismatch that leaving it out brings back.
-
-    On held-out experiments; on the estimation experiments where those do not exercise the effect, or where there are none. Where the search
-    was stopped before it knew what every effect brings, each has an equal part of what all of them account for together.
-    """
-    together = size(state.plain.fits, state.plain.fits, state.current.fits, study.settings)
-    found = {prefix: together / len(state.effects) for prefix in state.prefixes}
-    for prefix in state.without:
-        gain = gains.get(prefix)
-        if gain is None or gain.unexercised(study.settings) or not np.isfinite(gain.size):
-            found[prefix] = size(state.plain.fits, state.without[prefix].fits, state.current.fits, study.settings)
-        else:
-            found[prefix] = gain.size
-    return found
 
 
 def least_size(study: Study, state: SearchState, others: HeldOut | None) -> float:

@@ -20,12 +20,7 @@ from greybox_torch.diagnosis.describe.law_over_data import over_data
 from greybox_torch.diagnosis.describe.line_tried import line_tried
 from greybox_torch.diagnosis.describe.memory import remembered, settled_curve
 from greybox_torch.diagnosis.describe.one_direction import with_likes
-from greybox_torch.diagnosis.describe.profiles import (
-    explained_energy,
-    local_signals,
-    profile,
-    with_samples,
-)
+from greybox_torch.diagnosis.describe.profiles import explained_energy, profile, with_samples
 from greybox_torch.diagnosis.describe.shared_with_parameters import shared_with_parameters
 from greybox_torch.diagnosis.describe.sign_of_term import sign_of_term
 from greybox_torch.diagnosis.describe.signal_names import as_named, signal_name, unit_told
@@ -35,6 +30,7 @@ from greybox_torch.diagnosis.describe.why_limited import why_limited
 from greybox_torch.diagnosis.describe.without_unit import without_unit
 from greybox_torch.diagnosis.effect import Effect, Profile
 from greybox_torch.diagnosis.hypothesis.final import Final
+from greybox_torch.diagnosis.hypothesis.signals_along import local_signals
 from greybox_torch.diagnosis.one_of import Alternative
 from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest, lowest_limit
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
@@ -52,11 +48,13 @@ from greybox_torch.model.ports import Port
 
 @dataclass(frozen=True)
 class _Account:
-    """What an effect accounts for: shares of the validation error and of the mismatch, and the gain on held-out experiments, if any."""
+    """What an effect accounts for: shares of the validation error and of the mismatch, the gain on held-out experiments, if any, and the
+    sizes of all effects at its port."""
 
     explained: float
     size: float
     gain: Gain | None
+    at_its_port: tuple[float, ...]
 
 
 def describe(
@@ -86,12 +84,16 @@ def describe(
             final,
             left,
             e,
-            _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix)),
+            _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix), _at_port_of(e, state, sizes)),
             deadline,
         )
         for e, part in zip(state.effects, _parts(state), strict=True)
     )
     return with_likes(state.current, told, final.problem)
+
+
+def _at_port_of(effect: Attachment, state: SearchState, sizes: Mapping[str, float]) -> tuple[float, ...]:
+    return tuple(sizes.get(e.prefix, np.nan) for e in state.effects if e.port == effect.port)
 
 
 def _parts(state: SearchState) -> list[float]:
@@ -124,7 +126,16 @@ def _effect(
     read = {*attachment.mechanism.signals(), *attachment.mechanism.needs}
     limit = lowest(
         limited_by_time({n: v for n, v in local.items() if n in read}, study.problem.records, study.settings),
-        lowest_limit(remaining, state.current, study.settings, left, free=free, ceiling=ceiling, size=account.size),
+        lowest_limit(
+            remaining,
+            state.current,
+            study.settings,
+            left,
+            free=free,
+            ceiling=ceiling,
+            size=account.size,
+            at_its_port=account.at_its_port,
+        ),
     )
     probability = uncapped if limit is None else min(uncapped, limit.highest)
     profiles = _profiles(study, state, model, attachment, site, local)

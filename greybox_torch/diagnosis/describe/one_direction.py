@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import torch
 
-from greybox_torch.diagnosis.describe.profiles import local_signals
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.signals_along import local_signals
 from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.estimate.notes import with_value
 from greybox_torch.estimate.problem import Problem

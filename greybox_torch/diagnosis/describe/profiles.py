@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.factor import Factor
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.window_fit import WindowFit, states_along
+from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
@@ -35,16 +35,6 @@ def explained_energy(before: Hypothesis, after: Hypothesis) -> np.ndarray:
 def _squared_errors(fit: WindowFit, simulator: Simulator) -> np.ndarray:
     errors = window_errors(fit, simulator) * fit.problem.weights[:, None]
     return np.nansum(errors**2, axis=0)
-
-
-def local_signals(
-    model: AugmentedModel, attachment: Attachment, fit: WindowFit, simulator: Simulator
-) -> dict[str, np.ndarray]:
-    """The signals that an effect depends on, along the estimation records (N,)."""
-    problem, states = fit.problem, states_along(fit, simulator)
-    x, u = model.named_signals(torch.as_tensor(states.T), torch.as_tensor(problem.driving_records.u))
-    local = model.local_signals(attachment, x, u, problem.parameter_tensors)
-    return {n: np.broadcast_to(np.asarray(v, dtype=float), states.shape[:1]) for n, v in local.items()}
 
 
 def profile(name: str, unit: str, values: np.ndarray, energy: np.ndarray) -> Profile:

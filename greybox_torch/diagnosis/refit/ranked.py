@@ -9,6 +9,7 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.degenerate import degenerate, grows_with_speed
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.hypothesis.in_a_few_samples import acts_in_a_few_samples
 from greybox_torch.diagnosis.hypothesis.significance import over_the_same_windows, white_samples, window_significance
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
@@ -104,4 +105,6 @@ def sound(study: Study, ranked: RankedCandidate) -> bool:
     """Whether the newest effect's parameters, as they were refitted, say something of the machine."""
     effect, fitted = ranked.candidate.attachment, ranked.fitted
     says_something = degenerate(effect, study.surroundings, fitted.values()) is None
-    return says_something and not grows_with_speed(fitted, effect, study.surroundings, study.settings)
+    if not says_something or grows_with_speed(fitted, effect, study.surroundings, study.settings):
+        return False
+    return not acts_in_a_few_samples(fitted, effect, study.settings)

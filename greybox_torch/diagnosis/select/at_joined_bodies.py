@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from greybox_torch.diagnosis.hypothesis.above_noise import only_noise
+from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.refit.possible_form import possible_form
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, in_order, judged, sound
-from greybox_torch.diagnosis.refit.refitted import fit, refitted
+from greybox_torch.diagnosis.refit.refitted import fit, polished, refitted
 from greybox_torch.diagnosis.refit.twins import renamed
 from greybox_torch.diagnosis.select.choice import chosen
 from greybox_torch.diagnosis.select.flexed import widened
@@ -27,24 +28,38 @@ from greybox_torch.model.joined_bodies import joined_bodies
 def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
     """``state`` with the law of its last step at the joined body where it goes farthest; asked where more than noise is left.
 
-    Only at bodies where it had no turn in that step and is not there already. What was asked is a rival there in any case.
+    Only at bodies where it is not there already. Where it had its turn in that step it is asked again, from the values of the one taken, if
+    it came clearly less far: its own start values may have led to a local minimum. What was asked is a rival there in any case.
     """
     done = state.steps[-1]
     taken = done.taken
     if taken is None or taken.unknown or only_noise(study.problem, state.current, study.settings):
         return state
-    there = {r.candidate.attachment.named for r in done.ranked} | {e.named for e in done.parent.effects}
-    laws = [law for law in _elsewhere(study, taken.candidate.attachment) if law.named not in there]
+    ranked = {r.candidate.attachment.named: r for r in reversed(done.ranked)}  # of several forms the best
+    asked = set(ranked) | {e.named for e in done.parent.effects}
+    near = state.current.score + study.settings.score_tie
+    done_with = {named for named in asked if named not in ranked or ranked[named].fitted.score < near}
+    laws = [law for law in _elsewhere(study, taken.candidate.attachment) if law.named not in done_with]
     moved = [found for law in laws if (found := _moved(study, state, taken, law)) is not None]
+    moved = [r for r in moved if (own := ranked.get(r.candidate.attachment.named)) is None or _farther(r, own)]
     if not moved:
         return state
-    moved += _contained(study, state, min(moved, key=lambda r: r.fitted.score), there)
-    ranked = in_order([*done.ranked, *moved], study.settings)
-    step = replace(done, ranked=tuple(ranked))
+    farthest = min(moved, key=lambda r: r.fitted.score)
+    moved += _contained(study, state, farthest, asked)
+    if farthest.fitted.score < near and (further := _converged(study, taken.fitted)) is not taken.fitted:
+        taken = judged(taken.candidate, done.parent, further, study.settings)
+    again = {r.candidate.attachment.named for r in moved}
+    others = [r for r in done.ranked if r.fitted is not state.current and r.candidate.attachment.named not in again]
+    step = replace(done, ranked=tuple(in_order([*others, taken, *moved], study.settings)))
     state = replace(state, steps=(*state.steps[:-1], step))
     apart = [r for r in in_order([*moved, taken], study.settings) if r is taken or sound(study, r)]
     best = chosen(apart, state.plain, study.settings) or taken
-    return state if best is taken else widened(state, step, best, best.fitted)
+    return state if best is done.taken else widened(state, step, best, best.fitted)
+
+
+def _farther(moved: RankedCandidate, own: RankedCandidate) -> bool:
+    """Whether a law goes farther from the values of another body's than it went by itself."""
+    return moved.fitted.score < own.fitted.score
 
 
 def _elsewhere(study: Study, law: Attachment) -> Iterator[Attachment]:
@@ -63,7 +78,24 @@ def _moved(study: Study, state: SearchState, taken: RankedCandidate, law: Attach
     study.working_on(f"refitting {law.prefix} in the place of {before.prefix}")
     start = renamed(state.current.values(), f"{before.prefix}.", f"{law.prefix}.")
     fitted = fit(study, (*parent.effects, law), [start], state.current.fits[0])
-    return None if fitted is None else judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
+    if fitted is None:
+        return None
+    if abs(fitted.score - state.current.score) < study.settings.curve_margin:
+        fitted = _converged(study, fitted)
+    return judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
+
+
+def _converged(study: Study, fitted: Hypothesis) -> Hypothesis:
+    """``fitted`` polished, also from the model's values on the card, until that hardly betters it.
+
+    Along the valley of a law whose parameters make up for one another a refit ends early. Seen: a stop of an arm, of which three more
+    refits removed as much as set it apart from one of its gearbox.
+    """
+    for _ in range(study.budget.most_polishes):
+        before, fitted = fitted, polished(study, fitted, [{**fitted.values(), **study.card}])
+        if fitted.score > before.score - study.settings.hardly_better:
+            break
+    return fitted
 
 
 def _contained(

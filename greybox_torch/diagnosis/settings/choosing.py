@@ -142,10 +142,21 @@ class ComparisonSettings:
     least_ratio_spread: float = number(
         0.02, "Scatter of the windows' errors below which differences between windows mean nothing.", unit=LOG_ERROR
     )
+    fewest_samples_of_a_law: int = count(
+        8,
+        "Samples in which a law that acts beyond a value alone has to act.",
+        unit="samples",
+        chosen_by="a sample or two are an event, and not a law that repeats",
+    )
     parameter_price: float = number(
         0.003, "Improvement that a further parameter has to bring where more than noise is left.", unit=LOG_ERROR
     )
     score_tie: float = number(0.03, "Difference up to which named hypotheses tie.", unit=LOG_ERROR)
+    hardly_better: float = number(
+        0.001,
+        "By how much a further refit has to better a law that two bodies may have for another one.",
+        unit=LOG_ERROR,
+    )
     trial_allowance: float = number(
         0.05, "How much worse than without it a candidate may be after its trial.", unit=LOG_ERROR
     )

@@ -9,7 +9,8 @@ import pytest
 
 from greybox_torch.diagnosis.confirm import standing
 from greybox_torch.diagnosis.confirm.held_out import Gain, HeldOut
-from greybox_torch.diagnosis.confirm.standing import least_size, refinements, sharing_with_the_rest, sizes
+from greybox_torch.diagnosis.confirm.sizes import sizes
+from greybox_torch.diagnosis.confirm.standing import least_size, refinements, sharing_with_the_rest
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.mechanisms.actuator import InputDelay, InputLag

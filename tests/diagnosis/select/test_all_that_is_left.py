@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.select.all_that_is_left import (
     limited_by_a_curve,
     limited_by_a_larger_rest,
     limited_by_a_poor_fit,
+    limited_by_others_at_its_port,
     limited_by_what_is_left,
     lowest_limit,
 )
@@ -106,6 +107,26 @@ def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
     assert (None if limit is None else limit.highest) == highest
     if limit is not None:
         assert "19 % of the mismatch, of which free runs leave 53 %" in limit.why
+
+
+@pytest.mark.parametrize(
+    ("sizes", "left", "limited"),
+    [
+        ((0.14, 0.23, 0.06), LeftInFreeRuns(0.13, times_noise=2.9), True),
+        ((0.23,), LeftInFreeRuns(0.13, times_noise=2.9), False),  # alone at its port
+        ((0.14, 0.6), LeftInFreeRuns(0.13, times_noise=2.9), False),  # one of them stands for the mismatch
+        ((0.14, 0.23), LeftInFreeRuns(0.03, times_noise=2.9), False),  # together they leave little
+        ((0.14, 0.23), LeftInFreeRuns(0.13, times_noise=1.1), False),  # or hardly more than noise
+        ((0.14, 0.23), LeftInFreeRuns(), False),  # no free run tells
+        ((0.14, float("nan")), LeftInFreeRuns(0.13, times_noise=2.9), True),
+    ],
+)
+def test_several_parts_at_one_port_may_be_one_other_law(sizes, left, limited) -> None:
+    """Seen: the losses of a coil's core, told as bristles, a stop and waves of the current (0.97 each)."""
+    limit = limited_by_others_at_its_port(sizes, left, SETTINGS)
+    assert (limit is not None) is limited
+    if limit is not None:
+        assert limit.highest == 0.5 and f"none of the {len(sizes)} effects at its port" in limit.why
 
 
 def test_the_lowest_limit_counts(left_much) -> None:

@@ -135,6 +135,17 @@ def test_asked_only_of_a_law_that_leaves_more_than_noise_and_had_no_turn_elsewhe
     assert at_joined_bodies(search.study, state) is state
 
 
+def test_asked_again_where_its_own_turn_ended_far_behind(told_at_the_motor) -> None:
+    """Seen: a stop of an arm, told as one of its gearbox (0.97): by itself the arm's had ended in a local minimum."""
+    search, state = told_at_the_motor
+    step = at_turn_of_both(search, state.steps[0])
+    poor = replace(step.ranked[1], fitted=search.plain, gain=0.0)  # as if its refit had not moved
+    step = replace(step, ranked=(step.ranked[0], poor))
+    after = at_joined_bodies(search.study, replace(state, steps=(step,)))
+    assert [e.named for e in after.effects] == [("load", "quadratic_drag")]
+    assert [r.candidate.attachment.port for r in after.steps[0].ranked] == ["load", "motor"], "each law once"
+
+
 def at_turn_of_both(search: Any, step: SelectionStep) -> SelectionStep:
     """The step with the law at the load among those that had a turn in it."""
     law = attach(search.study.problem.model, "load", QuadraticDrag())
