@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information
@@ -25,13 +27,17 @@ def window_information(fit: WindowFit, simulator: Simulator) -> np.ndarray | Non
 
 
 def uncertainty_over_windows(
-    fit: WindowFit, simulator: Simulator, known: np.ndarray | None = None
+    fit: WindowFit,
+    simulator: Simulator,
+    known: np.ndarray | None = None,
+    names: Sequence[str] | None = None,
 ) -> Uncertainty | None:
     """Of the free parameters, start states of the windows eliminated; errors as white as they are. None where nothing is free, and where
     the windows cannot be simulated.
 
     Args:
         known: what is known of the free parameters before (n_p,), as inverse variances about their values; by default nothing.
+        names: the free parameters that are asked for, in this order, the others taken as known; by default all.
     """
     information = window_information(fit, simulator)
     if information is None or not len(information):
@@ -39,4 +45,9 @@ def uncertainty_over_windows(
     unknowns = len(information) + fit.starts.size
     variance = float(fit.energies.sum()) / max(fit.problem.samples - unknowns, 1)
     before = 0.0 if known is None else np.diag(known)
-    return of_information(information / max(variance, np.finfo(float).tiny) + before)
+    asked = fit.problem.free_names if names is None else names
+    index = [fit.problem.free_names.index(name) for name in asked]
+    if not index:
+        return None
+    found = information / max(variance, np.finfo(float).tiny) + before
+    return of_information(found[np.ix_(index, index)])

@@ -150,7 +150,9 @@ def as_windows_have_it(
     hypothesis = in_steps_for_whole_records(hypothesis, settings)
     problem = from_windows(hypothesis.fits[-1])
     run = whole_runs(hypothesis, [problem])[0] if records is None else _on_all(hypothesis, records, problem)
-    at, known = run.at(run.start), uncertainty_over_windows(hypothesis.fits[-1], hypothesis.simulator)
+    at = run.at(run.start)
+    # Whole records take the weights of curves as known: the windows have them among their unknowns.
+    known = uncertainty_over_windows(hypothesis.fits[-1], hypothesis.simulator, names=at.free_names)
 
     def with_curves() -> Final | None:
         found = windows_beside_curves(hypothesis, at)

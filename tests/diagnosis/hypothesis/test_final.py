@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import noise_over_windows
 from greybox_torch.diagnosis.hypothesis.final import _from_the_card, as_windows_have_it, finish
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.problem import make_problem
+from greybox_torch.mechanisms.actuator import InputLag
 from greybox_torch.mechanisms.attachment import attach
 from greybox_torch.mechanisms.forces import ConstantBias
 from greybox_torch.mechanisms.unknown import Unknown
@@ -71,6 +72,19 @@ def test_the_values_of_windows_have_the_deviations_that_they_scatter_by(motor_da
         true = {"J": 0.02, "b": 0.05, "rotor.constant_bias.bias": 0.05}
         scores += [(final.values()[n] - value) / final.deviations()[n] for n, value in true.items()]
     assert 0.5 < float(np.sqrt(np.mean(np.square(scores)))) < 1.6
+
+
+def test_deviations_of_windows_are_by_name_wherever_a_curve_stands(motor_data, motor, begun) -> None:
+    """They were those of other parameters behind a curve: what decides whether an effect says something read them."""
+    search = begun(motor_data(torque=lambda q, v: 0.02 * np.cos(0.1 * v) + 0.03, noise=0.02), motor)
+    curve, lag = attach(motor, "rotor", Unknown("speed", 8)), attach(motor, "actuator", InputLag())
+    start = [{**search.plain.values(), "actuator.input_lag.T": 0.01}]
+    one = search.refitted((lag, curve), search.plain, start)
+    other = search.refitted((curve, lag), search.plain, [one.values()])
+    deviations, behind = (as_windows_have_it(h).deviations() for h in (one, other))
+    assert set(behind) == set(deviations) and "actuator.input_lag.T" in behind
+    for name, deviation in deviations.items():
+        assert behind[name] == pytest.approx(deviation, rel=0.05), name
 
 
 @pytest.mark.parametrize("loud", [False, True], ids=["weighed by their spectrum", "weighed alike"])
