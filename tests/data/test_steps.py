@@ -32,7 +32,9 @@ def test_what_floats_round_is_no_step(rate: float) -> None:
     np.testing.assert_array_equal(steps_of(time), usual_step(time))
 
 
-@given(st.integers(1, 999), st.sampled_from([1e-4, 1e-5]), st.integers(200, 3000), st.floats(0.0, 3e8), st.integers(0, 3))
+@given(
+    st.integers(1, 999), st.sampled_from([1e-4, 1e-5]), st.integers(200, 3000), st.floats(0.0, 3e8), st.integers(0, 3)
+)
 def test_a_step_is_the_number_that_one_would_write(
     number: int, unit: float, count: int, later: float, gaps: int
 ) -> None:
