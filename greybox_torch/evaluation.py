@@ -20,7 +20,7 @@ from greybox_torch.estimate.residuals import Residuals, residuals_of
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
-from greybox_torch.name_lists import listed
+from greybox_torch.name_lists import further, listed
 from greybox_torch.rates import rates_at
 from greybox_torch.restored import load_beside
 from greybox_torch.simulation.simulator import SimulationOptions
@@ -172,6 +172,6 @@ def _told(data: DataSet, found: tuple[Overflow, ...]) -> str:
     times = {r.name: r.time for r in data.recordings}
     at = [f"at {times[o.experiment][o.sample]:.6g} s" for o in found[:MOST_NAMED]]
     others = [f"of '{o.experiment}' {when}" for o, when in zip(found[1:], at[1:], strict=False)]
-    others += [f"of {len(found) - MOST_NAMED} more experiments"] if len(found) > MOST_NAMED else []
+    others += [f"of {further(len(found) - MOST_NAMED, 'experiment')}"] if len(found) > MOST_NAMED else []
     told = ", ".join([f"the simulation of '{found[0].experiment}' overflows {at[0]}", *others])
     return f"{told} ({NO_NUMBER})" if found[0].no_number else told

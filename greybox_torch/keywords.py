@@ -9,7 +9,7 @@ from functools import wraps
 from importlib import import_module
 from typing import ParamSpec, TypeVar
 
-from greybox_torch.errors import ArgumentError, did_you_mean
+from greybox_torch.errors import ArgumentError, Kind, did_you_mean
 
 MOST = 20
 """Names that a message lists at most."""
@@ -36,11 +36,14 @@ def keyword_advice(error: BaseException) -> str:
 
 
 def names_checked(function: Callable[_Given, _Returned]) -> Callable[_Given, _Returned]:
-    """The function, which says as an ArgumentError that it takes no argument of a name, with the near name: Python's TypeError has none."""
+    """The function, which says as an ArgumentError that it takes no argument of a name, with the near name, or that one is missing: of a
+    TypeError of Python's no message is made.
+    """
 
     @wraps(function)
     def called(*args: _Given.args, **kwargs: _Given.kwargs) -> _Returned:
         _check(function, function, kwargs)
+        _check_none_missing(function, args, kwargs)
         return function(*args, **kwargs)
 
     return called
@@ -68,6 +71,20 @@ def _check(function: Callable[..., object], called: Callable[..., object], given
         if name not in known:
             problem = f"{called.__name__}() takes no argument of this name{_meant(name, called)}; {_taken(called)}"
             raise ArgumentError(name, value, problem)
+
+
+def _check_none_missing(function: Callable[..., object], args: tuple[object, ...], given: dict[str, object]) -> None:
+    known = inspect.signature(function)
+    try:
+        there = known.bind_partial(*args, **given).arguments
+    except TypeError:
+        return  # more by position than it takes: Python says so
+    variable = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+    needed = [n for n, p in known.parameters.items() if n != "self" and p.default is p.empty and p.kind not in variable]
+    for name in needed:
+        if name not in there:
+            problem = f"{function.__name__}() needs it, as in {function.__name__}({', '.join(needed)})"
+            raise ArgumentError(name, Kind("nothing"), problem)
 
 
 def _names(function: Callable[..., object]) -> list[str]:

@@ -15,6 +15,11 @@ def listed(names: Sequence[str], conjunction: str = "and") -> str:
     return f" {conjunction} ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])
 
 
+def further(count: int, noun: str) -> str:
+    """'1 more row', '2 more rows': how many were not told."""
+    return f"{count} more {noun}{'' if count == 1 else 's'}"
+
+
 def brief(names: Sequence[str]) -> str:
     """:func:`listed`, with the start states of several experiments as one entry, and of more than MOST_NAMES names the first."""
     states: dict[str, list[str]] = {}

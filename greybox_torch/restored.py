@@ -91,8 +91,8 @@ def load_beside(path: str | PathLike[str], own: GreyBoxModel, data: DataSet) -> 
     checkpoint = load_checkpoint(path)
     if checkpoint.model not in BUILT_IN and checkpoint.title != own.title:
         raise UserError(
-            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}, not of {own.title}; a model file is run only "
-            "where you name it yourself: on the card, as --model, or as the argument model"
+            f"checkpoint {path}: is of the model {checkpoint.title} in {checkpoint.model}, not of {own.title}; expected a checkpoint of "
+            f"{own.title}, or {checkpoint.title} as the model that is named: on the card, as --model, or as the argument model"
         )
     plain = own.plain if checkpoint.title == own.title else load_model(checkpoint.model)
     data = card_of(data, own, plain)

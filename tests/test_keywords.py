@@ -26,6 +26,8 @@ ARM: Any = RobotArm
             'diagnose() takes no argument of this name (did you mean "time_limit"?)',
         ),
         (lambda: GT.fit(role=1), "role", "; it takes model, data"),
+        (lambda: GT.fit(1), "data", "data: found nothing, fit() needs it, as in fit(model, data)"),
+        (lambda: GT.compare(), "data", "compare() needs it, as in compare(data, models)"),
         (lambda: GT.SearchBudget(most_efects=2), "most_efects", '(did you mean "most_effects"?)'),
         (lambda: GT.DiagnosisSettings(most_efects=2), "most_efects", "(did you mean SearchBudget(most_effects=…)?)"),
         (lambda: GT.DiagnosisSettings(most_effect=1), "most_effect", "(did you mean SearchBudget(most_effects=…)?)"),
@@ -49,4 +51,6 @@ def test_nothing_else_changes() -> None:
         return len(values)
 
     assert any_name(one=1) == 1
+    with pytest.raises(TypeError, match="positional"):
+        GT.fit(1, 2, 3)
     assert keyword_advice(TypeError("own() got an unexpected keyword argument 'a'")) == ""

@@ -183,7 +183,10 @@ def test_a_model_file_that_only_the_checkpoint_names_never_runs(motor_folder: Ma
         assert result.exit_code == 0, result.stderr
     else:
         assert result.exit_code == 2
-        assert "a model file is run only where you name it yourself: on the card, as --model" in result.stderr
+        assert (
+            "expected a checkpoint of Motor, or Evil as the model that is named: on the card, as --model"
+            in result.stderr
+        )
     with pytest.raises(UserError, match="a model file is run only where you name it yourself") as refused:
         load_saved_model(folder / "model")
     assert f"load('{folder / 'model'}', model=" in str(refused.value), "the call to write instead"

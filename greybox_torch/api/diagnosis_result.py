@@ -15,12 +15,12 @@ import numpy as np
 from rich.console import Console
 
 from greybox_torch import __version__
-from greybox_torch.api.estimated import ByName
 from greybox_torch.api.free_runs import plot_simulated
 from greybox_torch.api.hypotheses import hypothesis_files, kept_hypotheses
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import score_rows, score_table
 from greybox_torch.api.verdict_summary import MOVED, effect_table, moved_table, notes, print_verdict, verdict_scores
+from greybox_torch.by_name import ByName
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.diagnosis.effect import Effect

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
 
-from greybox_torch.errors import did_you_mean
+from greybox_torch.by_name import ByName
 from greybox_torch.estimate.fit import Estimation
-
-Entry = TypeVar("Entry")
 
 
 @dataclass(frozen=True)
@@ -39,13 +36,6 @@ class EstimatedParameter(EstimatedStart):
     lower: float
     upper: float
     description: str
-
-
-class ByName(dict[str, Entry]):
-    """Parameters by name; asked for another, it says which names there are."""
-
-    def __missing__(self, name: object) -> Entry:
-        raise KeyError(f"no parameter {name!r}{did_you_mean(str(name), self)}; there are: {', '.join(self)}")
 
 
 def estimated_parameters(found: Estimation) -> dict[str, EstimatedParameter]:

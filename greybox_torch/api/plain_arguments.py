@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from numbers import Integral, Real
 from typing import Any, TypeVar
 
@@ -64,7 +65,27 @@ def check_told(argument: str, value: Told, what: str = "a text") -> Told:
     """A function that is told of progress. Raises ArgumentError where ``value`` is none; ``what`` it is called with."""
     if not callable(value):
         raise ArgumentError(argument, value, f"expected a function that is called with {what}; leave it out for none")
+    if not _called_with_one(value):
+        raise ArgumentError(argument, Kind(_signature(value)), f"expected a function that is called with {what} alone")
     return value
+
+
+def _called_with_one(value: Callable[..., object]) -> bool:
+    """Whether it can be called with one argument by position; taken to be so where Python does not know its parameters."""
+    try:
+        parameters = inspect.signature(value)
+    except (TypeError, ValueError):
+        return True
+    try:
+        parameters.bind(None)
+    except TypeError:
+        return False
+    return True
+
+
+def _signature(value: Callable[..., object]) -> str:
+    """A function as a message shows it, such as "lambda()"."""
+    return f"{getattr(value, '__name__', type(value).__name__).strip('<>')}{inspect.signature(value)}"
 
 
 def check_kind(argument: str, value: Settings, kind: type[Settings]) -> Settings:

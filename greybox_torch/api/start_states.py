@@ -11,6 +11,7 @@ from greybox_torch.api.free_runs import Runs
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.initial import BEGINNINGS
+from greybox_torch.name_lists import further
 
 LESS = 10.0
 """Points of % by which a fit has to be worse than with the model's own start states to be told."""
@@ -58,7 +59,7 @@ def better_before(runs: Runs, own: Mapping[str, Fits]) -> list[str]:
         ]
         if worse:
             _, (experiment, output), fit = max(worse)
-            more = f" (and {len(worse) - 1} more rows)" if len(worse) > 1 else ""
+            more = f" (and {further(len(worse) - 1, 'row')})" if len(worse) > 1 else ""
             told.append(
                 f"{name}: {output} of '{experiment}' has a fit of {fit:.1f} %, and of {fits[experiment, output]:.1f} % with the start "
                 f"states of its estimate{more}: the first tenth does not determine them. Fix what is known in [model.initial], or judge by "

@@ -99,12 +99,9 @@ def _not_refitted(match: Match, explained: Explanation) -> str:
     if not explained.refitted:
         return ""
     if match.law.name in explained.failed:
-        return "put there: its simulation overflows"
-    return (
-        f"not put there: matches less than {LEAST_MATCH:g}"
-        if match.share <= LEAST_MATCH
-        else "not put there: others match more"
-    )
+        return "tried in its place: the simulation overflows"
+    why = f"it matches less than {100 * LEAST_MATCH:.0f} %" if match.share <= LEAST_MATCH else "others match more"
+    return f"not tried in its place: {why}"
 
 
 def open_sign(curves: Sequence[SignalCurve]) -> str:
@@ -122,7 +119,7 @@ def _row(term: NamedTerm) -> list[str]:
     matched = "" if term.match is None else f"{100 * term.match:.0f} %"
     units = term.attachment.own({p.name: p.unit for p in term.problem.model.declared_parameters})
     values = ", ".join(_value(name, value, units[name], term.bounds_reached) for name, value in term.parameters.items())
-    told = f"without its effect: {values}" if term.absent else values
+    told = f"no longer this law, as it was estimated with {term.absent}: {values}" if term.absent else values
     return [term.attachment.mechanism.name, matched, _beside(term.lost), told]
 
 

@@ -128,7 +128,9 @@ def _all_the_same(entry: ChannelEntry, column: str) -> str:
     if offset == 0.0:
         return f"scale = {factor:.9g}"
     name = column if column.isidentifier() else f'col("{column}")'
-    return f"expr = {toml_text(f'{factor:.9g}*{name} {offset:+.9g}')}"
+    scaled = name if factor == 1.0 else f"{factor:.9g}*{name}"
+    sign = "-" if offset < 0.0 else "+"
+    return f"expr = {toml_text(f'{scaled} {sign} {abs(offset):.9g}')}"
 
 
 def _of_rate(unit: str, entry: ChannelEntry) -> str:

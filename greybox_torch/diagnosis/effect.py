@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from greybox_torch.by_name import ByName
 from greybox_torch.diagnosis.curve import Curve
 from greybox_torch.diagnosis.determined import listed_with_values, told_undetermined
 from greybox_torch.diagnosis.digits import digits
@@ -119,6 +120,9 @@ class Effect:
 
     why_small: str = SO_LITTLE
     """Of a refinement: why it is no finding, a clause."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parameters", ByName(self.parameters))  # which says what names there are
 
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"

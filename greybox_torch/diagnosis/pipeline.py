@@ -30,6 +30,7 @@ from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.findings import Findings, small_ones
 from greybox_torch.diagnosis.further_searches import find_what_is_slow, find_with_more
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
+from greybox_torch.diagnosis.not_tried import NotTried
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.posterior import confidence, of_a_stopped_search
 from greybox_torch.diagnosis.selection import find
@@ -37,7 +38,7 @@ from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
-from greybox_torch.diagnosis.verdict import NotTried, Verdict
+from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.comparison import mean_fit
 from greybox_torch.estimate.start_states import starts_of
@@ -173,8 +174,7 @@ def _as_found(
     clock.lap("validation and report data")
     left = None if effects else error_without_a_name(study, state, found.others, judged)
     chosen_by = times_noise(study.problem, state.plain, study.settings)
-    tried = found.complete and not explained
-    lost = hardly_followed(judged)
+    tried, lost = found.complete and not explained, hardly_followed(judged)
     unexplained = left if is_missing(left, chosen_by, detected, tried, study.settings, lost) else None
     unstable = judged.unstable if effects else frozenset[str]()
     looked = not study.beliefs.exclude_all(model)
@@ -225,7 +225,7 @@ def _as_found(
         budget=study.budget,
         beliefs=study.beliefs,
         looked=looked,
-        not_tried=NotTried() if found.complete else NotTried(found.cut, study.journal.left),
+        not_tried=NotTried.of(found.complete, found.cut, study.journal, bool(state.steps)),
     )
     final, chosen = (judged.augmented, state.current) if effects else (judged.plain, state.plain)
     attachments = [attachment_json(e, study.surroundings[e.port]) for e in chosen.effects]

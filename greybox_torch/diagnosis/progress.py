@@ -12,6 +12,9 @@ from greybox_torch.diagnosis.one_of import spoken_at
 Named = tuple[str, str]
 """A port, and the mechanism there."""
 
+Pointed = tuple[Named, float]
+"""With the share of the error that it explains in a screen."""
+
 
 @dataclass(frozen=True)
 class Progress:
@@ -34,6 +37,7 @@ class Journal:
     def __init__(self, hear: Callable[[Progress], None] = lambda progress: None) -> None:
         self._hear, self._began, self._now = hear, time.perf_counter(), Progress(0.0)
         self._lock, self._left, self._tests = threading.Lock(), dict[Named, None](), 0
+        self._pointed: tuple[Pointed, ...] = ()
 
     def doing(self, text: str) -> None:
         """What is begun now."""
@@ -45,8 +49,11 @@ class Journal:
         leading = f"{named}: {100 * explained:.3g} % of the mismatch explained" if effects else ""
         self._tell(leading=leading, effects=tuple(effects), explained=explained if effects else None)
 
-    def pointed_at(self, effect: Named, share: float) -> None:
-        """What the screen puts first, with the share of the residual that it explains there; nothing where more is known already."""
+    def pointed_at(self, first: Pointed, *others: Pointed) -> None:
+        """What the screen puts first, and behind it; told of is the first, and nothing where more is known already."""
+        with self._lock:
+            self._pointed = (first, *others)
+        effect, share = first
         if self._now.explained is None:
             self._tell(leading=f"perhaps {_listed([effect])}: {100 * share:.3g} % in the screen", effects=(effect,))
 
@@ -64,6 +71,11 @@ class Journal:
         """A screen has ended that made so many tests of a mechanism at a port."""
         with self._lock:
             self._tests += tests
+
+    @property
+    def pointed(self) -> tuple[Pointed, ...]:
+        """What the last screen beside no effect put first, best first."""
+        return self._pointed
 
     @property
     def tests(self) -> int:

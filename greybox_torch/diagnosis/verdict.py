@@ -11,8 +11,8 @@ import numpy as np
 from greybox_torch.diagnosis.at_bounds import own_at_bounds
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.not_tried import NotTried
 from greybox_torch.diagnosis.of_no_use import of_no_use
-from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.own_parameters import Estimate, determined_together
 from greybox_torch.diagnosis.parts import about_sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
@@ -40,40 +40,6 @@ OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
 
 STOPPED = "The search was stopped before it was done (time limit or interruption): this is what it had found by then."
-
-MOST_NAMED = 12
-"""Candidates not tried any more up to which a sentence names them all."""
-
-
-@dataclass(frozen=True)
-class NotTried:
-    """What was left when a diagnosis was stopped: the ``stages`` that were cut short or left out, and the ``candidates`` (port, mechanism)
-    of the present step that were not yet refitted; all that it offers, where its screen did not come to an end.
-    """
-
-    stages: tuple[str, ...] = ()
-    candidates: tuple[tuple[str, str], ...] = ()
-
-    def sentences(self) -> tuple[str, ...]:
-        """For a reader."""
-        told = []
-        if self.stages:
-            told.append(f"Not finished: {'; '.join(stage.partition(':')[0] for stage in self.stages)}.")
-        if len(self.candidates) > MOST_NAMED:
-            told.append(
-                f"Not tried any more: {len(self.candidates)} mechanisms at ports, which verdict.json lists (not_tried)."
-            )
-        elif self.candidates:
-            named = ", ".join(spoken_at(mechanism, port) for port, mechanism in self.candidates)
-            told.append(f"Not tried any more: {named}.")
-        return tuple(told)
-
-    def as_json(self) -> dict[str, Any]:
-        """Its entry `not_tried`."""
-        return {
-            "stages": list(self.stages),
-            "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],
-        }
 
 
 @dataclass(frozen=True)
@@ -121,7 +87,7 @@ class Verdict:
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
-    not_tried: NotTried = NotTried()
+    not_tried: NotTried = field(default_factory=NotTried)
     parameters: tuple[Estimate, ...] = field(repr=False, default=())
     beliefs: Beliefs = NO_BELIEFS
     """What was known beforehand."""
@@ -148,7 +114,7 @@ class Verdict:
         """The verdict in one sentence."""
         if not self.effects:
             known = (self.unexplained, mostly_in(self.counted("refit")), self.looked, self.complete, self.too_short)
-            tried = (self.beliefs.exclude_some, self.unsure, self.disturbed)
+            tried = (self.beliefs.exclude_some, self.unsure or self.not_tried.points_to, self.disturbed)
             return WithoutEffects(self.model, self.confidence, *known, *tried).sentence
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]

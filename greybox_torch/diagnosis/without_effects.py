@@ -17,8 +17,8 @@ class WithoutEffects:
     ``unexplained``: how many times the noise the error is, None where that is not clearly more; ``output`` in which it is, where in one;
     ``looked`` and ``complete``: whether anything was looked for, and to the end; ``too_short``: a clause where the recordings to
     choose with are too short to tell anything from chance, else "". ``excluded``: whether beliefs kept some laws from being tried.
-    ``unsure``: a clause on a candidate that would explain much of it and is not sure, else "". ``disturbed``: how many times the noise the
-    error is where nothing says that more is missing than knowledge of a disturbance, else None.
+    ``unsure``: a clause on a candidate that would explain much of it and is not sure, or that the screen alone points to, else "".
+    ``disturbed``: how many times the noise the error is where nothing says that more is missing than knowledge of a disturbance, else None.
     """
 
     model: str
@@ -42,7 +42,7 @@ class WithoutEffects:
         if not self.looked:
             return f"Nothing was looked for in {self.model}: the beliefs exclude every hypothesis."
         if not self.complete:
-            return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet."
+            return f"Nothing was found to be missing from {self.model} before the search was stopped: no answer yet{self._so_far}."
         but = ""
         if self.disturbed is not None:
             but = (
@@ -52,6 +52,11 @@ class WithoutEffects:
         return f"Nothing is missing from {self.model} that these recordings can show (confidence {self.confidence:.2f}){but}."
 
     @property
+    def _so_far(self) -> str:
+        """What a search that was stopped has of a candidate."""
+        return f": so far, {self.unsure}" if self.unsure else ""
+
+    @property
     def _why(self) -> str:
         """Why what is missing has no name."""
         if not self.looked:
@@ -59,8 +64,7 @@ class WithoutEffects:
         if self.too_short:
             return f"What it is cannot be told: {self.too_short}."
         if not self.complete:
-            so_far = f": so far, {self.unsure}" if self.unsure else ""
-            return f"The search was stopped before it could say what{so_far}."
+            return f"The search was stopped before it could say what{self._so_far}."
         surely = "surely explains" if self.unsure else "explains"
         said = f"No law of the library and no curve of one signal {surely} it, with or without memory"
         if self.excluded:

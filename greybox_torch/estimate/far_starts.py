@@ -10,6 +10,7 @@ from greybox_torch.estimate.measured_range import noise_of
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.in_unit import in_unit
 from greybox_torch.model.sensed_states import sensed_states
+from greybox_torch.name_lists import further
 
 NOISE_AT_MOST = 6.0
 """Standard deviations of a sensor's noise that a start state may lie from the first sample."""
@@ -53,7 +54,7 @@ def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
 
 def told_far(far: Sequence[str]) -> str:
     """What a reader has to know of :func:`far_starts`, without a full stop."""
-    more = f"; and {len(far) - _SHOWN} more experiments" if len(far) > _SHOWN else ""
+    more = f"; and {further(len(far) - _SHOWN, 'experiment')}" if len(far) > _SHOWN else ""
     return (
         f"{'; '.join(far[:_SHOWN])}{more}: farther from the first sample than the sensor's noise explains, though the state is declared to "
         "begin as measured. Such a start makes up for something that the model lacks; [model.initial] name = { fixed = true } on the card "

@@ -15,6 +15,13 @@ AS_RECORDED = "recorded"
 STEPPED = 0.5
 """Share of an input's changes that stand alone, the input constant before and after, from which on it was set in steps."""
 
+BEYOND_NOISE = 8.0
+"""Times the median change from a sample to the next, which is noise where a value is held, that a change is more than noise: five standard
+deviations of it."""
+
+MOST_BETWEEN = 0.1
+"""Part of its own standard deviation by which an input may vary between the steps that it is set in."""
+
 ROUNDING = 1e-6
 """Share of a step by which time stamps may be off by rounding alone."""
 
@@ -43,10 +50,26 @@ def has_range(entry: Any) -> bool:
 
 
 def _set_in_steps(data: DataSet, name: str) -> bool:
-    """Whether most changes of a channel stand alone: one sample before and one after it keep their value."""
-    changes = [np.diff(r.signals[name]) != 0.0 for r in data.recordings]
+    """Whether most changes of a channel stand alone: one sample before and one after it keep their value.
+
+    A value that is read back has noise. Seen: a heater's power, set every 20 min, each sample of which differed from the last by 0.02 kW,
+    told as "never set in steps".
+    """
+    held = [_held(r.signals[name]) for r in data.recordings]
+    changes = [changed for changed, _ in held]
     alone = sum(int((c[1:-1] & ~c[:-2] & ~c[2:]).sum()) for c in changes)
-    return alone > STEPPED * max(sum(int(c[1:-1].sum()) for c in changes), 1)
+    return alone > STEPPED * max(sum(int(c[1:-1].sum()) for c in changes), 1) and all(keeps for _, keeps in held)
+
+
+def _held(values: np.ndarray) -> tuple[np.ndarray, bool]:
+    """From which of the samples (N,) to the next they change by more than noise, (N - 1,), and whether they keep their value in between."""
+    values = np.asarray(values, dtype=float)
+    values = values[np.isfinite(values)]
+    changes = np.abs(np.diff(values))
+    changed = changes > BEYOND_NOISE * (np.median(changes) if len(changes) else 0.0)
+    step = np.concatenate([[0], np.cumsum(changed)])[: len(values)]
+    means = np.bincount(step, values) / np.bincount(step) if len(values) else values
+    return changed, bool(np.std(values - means[step]) <= MOST_BETWEEN * np.std(values)) if len(values) else True
 
 
 def traces_of(recording: Recording, names: Sequence[str], step: float) -> dict[str, np.ndarray]:

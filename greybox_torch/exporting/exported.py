@@ -101,6 +101,8 @@ def exported(
 
 def _parameter(declared: Parameter, value: float, is_switch: bool) -> Variable:
     told = with_pitch(declared.description, value, declared.unit)
+    if is_switch:
+        told = f"whether {declared.name.rpartition('.')[0]} acts: 1, or 0 where it does not"
     return Variable(declared.name, declared.unit, value, told, *declared.bounds, is_switch=is_switch)
 
 

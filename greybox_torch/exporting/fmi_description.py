@@ -100,8 +100,10 @@ def _units(root: Element, variables: Sequence[FmiVariable]) -> None:
 
 def _about(v: FmiVariable) -> dict[str, str]:
     told = {"name": v.name, "valueReference": str(v.reference)}
-    if v.of.description or v.kind == "switch":
-        told["description"] = v.of.description or f"whether {v.name.removesuffix('.active')} acts"
+    if v.kind == "switch":  # true or false here, and no number
+        told["description"] = f"whether {v.name.removesuffix('.active')} acts"
+    elif v.of.description:
+        told["description"] = v.of.description
     told["causality"] = _CAUSALITY[v.kind]
     told["variability"] = "tunable" if v.kind in ("parameter", "switch") else "continuous"
     initial = {"output": "calculated", "state": "exact", "parameter": "exact", "switch": "exact"}

@@ -204,5 +204,5 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"words": text.words}
+    environment.filters |= {"words": text.words, "prose": text.prose}
     return environment

@@ -102,13 +102,16 @@ def taken_over(found: Trained, explained: Explanation) -> list[str]:
     lines = []
     for term in _drawn(explained):
         own = {name: (term.problem.values_by_name[name], beside[name]) for name in explained.own}
+        moved = [
+            name for name, (now, before) in own.items() if abs(now - before) > OWN_MOVED * max(abs(now), abs(before))
+        ]
         told = [
-            f"{text.with_unit(f'{name} = {digits(now)}', units[name])} (beside the network {digits(before)})"
-            for name, (now, before) in own.items()
-            if abs(now - before) > OWN_MOVED * max(abs(now), abs(before))
+            f"{text.with_unit(f'{name} = {digits(own[name][0])}', units[name])} (beside the network {digits(own[name][1])})"
+            for name in moved
         ]
         if told:
-            lines.append(f"beside {term.attachment.mechanism.name}, {listed(told)}: that is drawn with neither curve")
+            what = f"what {listed(moved)} {'adds' if len(moved) == 1 else 'add'} is in neither curve"
+            lines.append(f"beside {term.attachment.mechanism.name} is estimated {listed(told)}; {what}")
     return lines
 
 

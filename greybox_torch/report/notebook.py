@@ -8,6 +8,7 @@ from html import escape
 from io import BytesIO
 from typing import TYPE_CHECKING
 
+from greybox_torch.report.code_words import marked
 from greybox_torch.report.tables import number
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ def page(title: str, *parts: str) -> str:
 
 def sentence(text: str, kind: str = "note") -> str:
     """A paragraph; ``kind`` "found" is the one that matters, "note" one that explains."""
-    return f'<p class="{kind}">{escape(text)}</p>'
+    return f'<p class="{kind}">{marked(escape(text))}</p>'
 
 
 def table(columns: Sequence[str], rows: Sequence[Sequence[str | float]], digits: int = 5) -> str:

@@ -62,5 +62,5 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"words": text.words, "percent": text.percent}
+    environment.filters |= {"words": text.words, "percent": text.percent, "prose": text.prose}
     return environment

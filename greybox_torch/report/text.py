@@ -8,6 +8,7 @@ import re
 from markupsafe import Markup, escape
 
 from greybox_torch.diagnosis.one_of import in_words
+from greybox_torch.report.code_words import marked
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _GREEK = {
@@ -103,8 +104,18 @@ def axis(name: str, of: str) -> str:
 
 
 def words(name: str) -> str:
-    """An identifier as words: `motor_speed` becomes motor speed."""
-    return name.replace("_", " ")
+    """An identifier as words, `motor_speed` as motor speed; what begins or ends with a single letter, T_j or UA_l, is a symbol with an
+    index and stays as it is written.
+    """
+    first, *_, last = name.split("_") if "_" in name else ("", "")
+    symbol = any(len(end) == 1 and end.isalpha() for end in (first, last))
+    return name if symbol else name.replace("_", " ")
+
+
+def title(name: str) -> str:
+    """:func:`words` with a capital, which would make another symbol of a symbol."""
+    told = words(name)
+    return told if "_" in told or len(told) == 1 else first_capital(told)
 
 
 def mechanism(name: str) -> str:
@@ -118,13 +129,18 @@ def first_capital(sentence: str) -> str:
 
 
 def symbol(name: str) -> Markup:
-    """A parameter's name as a formula would have it: F_c with a subscript, alpha as α; longer names as words."""
+    """A parameter's name as a formula would have it: F_c with a subscript, alpha as α; longer names as the law and the card have them."""
     letter, underscore, index = name.partition("_")
     letter = _GREEK.get(letter, letter)
     if len(letter) == 1:
         below = Markup("<sub>{}</sub>").format(index) if underscore else Markup("")
         return Markup("<i>{}</i>{}").format(letter, below)
-    return escape(words(name))
+    return escape(name)
+
+
+def prose(sentence: str) -> Markup:
+    """A sentence for a page, what stands between backticks as code."""
+    return Markup(marked(str(escape(sentence))))
 
 
 def seconds(value: float) -> str:

@@ -14,6 +14,10 @@ from greybox_torch.api.plain_arguments import check_seconds, check_seed
 from tests.api.motor import Motor
 
 
+def max_of_two(a, b):
+    return max(a, b)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -34,6 +38,8 @@ from tests.api.motor import Motor
         (lambda m, d: gt.train(m, d, progress=3), "progress: found 3, expected a function that is called with a Report"),
         (lambda m, d: gt.diagnose(m, d, progress=3), "progress: found 3, expected a function"),
         (lambda m, d: gt.diagnose(m, d, on_progress=3), "on_progress: found 3, expected a function that is called with a Progress"),
+        (lambda m, d: gt.diagnose(m, d, on_progress=lambda: 3), "on_progress: found lambda(), expected a function"),
+        (lambda m, d: gt.fit(m, d, progress=max_of_two), "progress: found max_of_two(a, b), expected a function that is"),
         (lambda m, d: gt.design("results", progress=3), "progress: found 3, expected a function"),
         (lambda m, d: gt.fleet("machines", "results", progress=3), "progress: found 3, expected a function"),
         (lambda m, d: gt.simulate(Motor, d), "model: found the class Motor, expected an object of it: Motor()"),

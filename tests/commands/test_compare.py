@@ -89,7 +89,7 @@ def test_checkpoint_of_another_structure(motor_folder: Make) -> None:
     path = saved(folder, "lag", model=file, title="Lag", values={"T": 0.02, "k": 0.1, "b": 0.05})
     result = greybox("compare", folder, path)
     assert result.exit_code == 2
-    assert "a model file is run only where you name it yourself" in result.stderr
+    assert f"is of the model Lag in {file}, not of Motor; expected a checkpoint of Motor, or Lag as" in result.stderr
     assert not (folder / "was_run").exists()
     data = gt.load_dataset(folder / "dataset.toml")
     start, lag = gt.load_model(str(data.model)), gt.load(path, file)

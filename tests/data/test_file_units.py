@@ -36,7 +36,8 @@ def loaded(
         ("Bar", 'unit = "m", file_unit = "mm"', '"q" in "Bar", the card says file_unit = "mm"; expected another column'),
         ("mm", 'unit = "m", file_unit = "cm"', 'file_unit = "cm"; expected file_unit = "mm"; or, if the file\'s unit is wrong, scale ='),
         ("mm", 'unit = "mm", file_unit = "m"', 'file_unit = "m"; expected no file_unit; or'),
-        ("K", 'unit = "degC", file_unit = "degF"', 'expected file_unit = "K"; or, if the file\'s unit is wrong, expr = "0.555555556*q -17'),
+        ("K", 'unit = "degC", file_unit = "degF"', 'expected file_unit = "K"; or, if the file\'s unit is wrong, expr = "0.555555556*q - 1'),
+        ("degF", 'unit = "degC", file_unit = "K"', 'expected file_unit = "degF"; or, if the file\'s unit is wrong, expr = "q - 273.15" in'),
         ("deg", 'unit = "rad/s", file_unit = "rad", derivative = 10.0', 'file_unit = "rad"; expected file_unit = "deg"'),
         ("counts", 'unit = "rad", file_unit = "deg"', 'has "q" in "counts", the card says "rad"; how many counts has a turn?'),
         ("bar", 'unit = "m"', 'in "bar", the card says "m"; expected another column; or, if the file\'s unit is wrong, scale = 1.0'),
@@ -85,7 +86,7 @@ def test_what_to_write_of_an_experiments_own_column(tmp_path: Path) -> None:
 
 
 def test_what_to_write_if_the_file_is_wrong_is_read(tmp_path: Path) -> None:
-    expr = 'expr = "0.555555556*q -17.7777778", unit = "degC"'
+    expr = 'expr = "0.555555556*q - 17.7777778", unit = "degC"'
     with pytest.raises(UserError, match="both"):
         loaded(tmp_path, "K", expr)
     card = (tmp_path / "dataset.toml").read_text().replace('column = "q", ', "")

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording, load_dataset
@@ -28,6 +30,20 @@ def test_what_floats_round_is_no_step(rate: float) -> None:
     assert usual_step(time) == pytest.approx(1.0 / rate, abs=3e-10)
     assert unevenness(time) == 0.0
     np.testing.assert_array_equal(steps_of(time), usual_step(time))
+
+
+@given(
+    st.integers(1, 999), st.sampled_from([1e-4, 1e-5]), st.integers(200, 3000), st.floats(0.0, 3e8), st.integers(0, 3)
+)
+def test_a_step_is_the_number_that_one_would_write(
+    number: int, unit: float, count: int, later: float, gaps: int
+) -> None:
+    """Seen: "samples 0.00199999998 s apart" on the card of a design, of date stamps of 2 ms."""
+    step = float(f"{number * unit:.3g}")
+    kept = np.ones(count, dtype=bool)
+    for k in range(min(gaps, count // 300)):  # more of them are no gaps: the logger writes when something changes
+        kept[(k + 1) * count // 4 : (k + 1) * count // 4 + 20] = False
+    assert usual_step((later + dated(step, count))[kept]) == step
 
 
 def test_a_gap_stays_a_gap() -> None:

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import greybox_torch as gt
 from greybox_torch.errors import UserError
@@ -31,6 +33,22 @@ def test_what_was_never_set_in_steps_is_kept_where_other_inputs_were(zone) -> No
     assert as_recorded(zone, names, {"sun": {"upper": 1.0}, "outside": {"rate": 1.0}}) == ("outside",)
     assert as_recorded(zone, names, {"heater": "recorded"}) == ("heater",)
     assert as_recorded(zone, ["outside", "sun"], {}) == ()  # nothing shows which of them is set
+
+
+@given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.02), st.integers(5, 60))
+def test_steps_are_seen_through_the_noise_of_a_value_read_back(seed: int, noise: float, hold: int) -> None:
+    """Seen: a heater's power, set every 20 min and read back with noise, told as never set in steps."""
+    rng = np.random.default_rng(seed)
+    levels = np.cumsum(rng.uniform(0.5, 2.0, 12) * rng.choice([-1.0, 1.0], 12))
+    time = np.arange(12 * hold)
+    own = {
+        "heater": np.repeat(levels, hold) + rng.normal(0.0, noise, len(time)),
+        "outside": np.sin(time / hold) + rng.normal(0.0, noise, len(time)),
+        "gusts": np.cumsum(rng.standard_t(3, len(time))),
+        "y": time,
+    }
+    data = gt.DataSet([gt.Recording.from_arrays("day", own, sample_time=1.0)])
+    assert as_recorded(data, ["heater", "outside", "gusts"], {}) == ("outside", "gusts")
 
 
 def test_an_input_with_a_range_or_under_a_loop_is_set(zone) -> None:

@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.deadline import until
+from greybox_torch.diagnosis.not_tried import MOST_NAMED, NotTried
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.stopping import best_so_far
-from greybox_torch.diagnosis.verdict import MOST_NAMED
 from greybox_torch.errors import NumericalError
 
 DRAG, BIAS = ("rotor", "quadratic_drag"), ("rotor", "constant_bias")
@@ -21,9 +21,9 @@ def test_the_screen_leads_until_a_refit_does() -> None:
     heard: list[Progress] = []
     journal = Journal(heard.append)
     journal.doing("screening")
-    journal.pointed_at(DRAG, 0.62)
+    journal.pointed_at((DRAG, 0.62))
     journal.found([BIAS], 0.943)
-    journal.pointed_at(DRAG, 0.7)
+    journal.pointed_at((DRAG, 0.7), (BIAS, 0.4))
     journal.found([BIAS, DRAG], 0.99)
     journal.found([], 0.0)
     assert [now.leading for now in heard] == [
@@ -78,6 +78,33 @@ def test_stopped_before_a_screen_has_ended(motor_data, motor) -> None:
     left = verdict.not_tried.candidates
     assert len(left) == len(set(left)) > MOST_NAMED and {DRAG, BIAS, ("rotor", "torque_ripple")} <= set(left)
     assert verdict.evidence[0].startswith("The search was stopped before any mechanism was tested at a port; the model")
+
+
+@pytest.mark.parametrize("cut", ["comparing the equations", "refitting rotor"])
+def test_stopped_after_the_screen_the_answer_says_what_that_points_to(motor_data, motor, cut: str) -> None:
+    """Seen: 174 tests of a mechanism at a port, and "stopped before it could say what": which of them led was nowhere."""
+
+    def stop(text: str) -> None:
+        if text.startswith(cut):
+            raise KeyboardInterrupt
+
+    verdict = diagnose(motor_data(400, torque=lambda q, v: -0.004 * v * abs(v)), motor, progress=stop).verdict
+    assert not verdict.effects and ": so far, the screen points to " in verdict.sentence
+    assert "quadratic drag at rotor (" in verdict.sentence and "no refit has confirmed" in verdict.sentence
+    pointed = verdict.as_json()["not_tried"]["pointed_at"]
+    assert {"rotor"} == {one["port"] for one in pointed} and "quadratic_drag" in {one["mechanism"] for one in pointed}
+    shares = [one["share"] for one in pointed]
+    assert shares[0] <= 1.0 and shares == sorted(shares, reverse=True)
+
+
+def test_where_a_step_has_ended_its_screen_is_not_told() -> None:
+    journal = Journal()
+    journal.pointed_at((DRAG, 0.98), (BIAS, 0.5))
+    told = NotTried.of(False, (), journal, False).points_to
+    assert told.startswith(
+        "the screen points to quadratic drag at rotor (98 %), before constant bias at rotor (50 %), by"
+    )
+    assert NotTried.of(False, (), journal, True).points_to == NotTried.of(True, (), journal, False).points_to == ""
 
 
 def test_the_leading_finding_is_told_and_is_the_answer_in_the_end(motor_data, motor) -> None:

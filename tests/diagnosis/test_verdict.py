@@ -51,6 +51,13 @@ def verdict(*effects: Effect, complete: bool = True) -> Verdict:
     )
 
 
+def test_parameters_of_an_effect_say_which_there_are() -> None:
+    """Seen: a bare KeyError of "half_widht", where those of a model have a hint."""
+    with pytest.raises(KeyError, match=r'did you mean "half_gap"\?\); there are: half_gap'):
+        BACKLASH.parameters["half_gpa"]
+    assert json.loads(json.dumps(BACKLASH.as_json()["parameters"])) == dict(BACKLASH.parameters)
+
+
 def test_keys_are_those_of_the_contract() -> None:
     found = json.loads(json.dumps(verdict(BACKLASH).as_json()))
     agreed = {"schema", "dataset", "model", "seed", "seconds", "mismatch", "confidence", "effects", "fit"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from greybox_torch.diagnosis.beliefs import Beliefs
+from greybox_torch.diagnosis.not_tried import NotTried
 from tests.diagnosis.test_verdict import verdict
 
 MISSING = replace(verdict(), unexplained=12.0)
@@ -30,6 +31,16 @@ def test_a_candidate_that_is_not_sure_is_told_in_the_sentence() -> None:
     assert told.endswith(f"no curve of one signal surely explains it, with or without memory: {UNSURE}.")
     stopped = replace(MISSING, unsure=UNSURE, complete=False).sentence
     assert stopped.endswith(f"The search was stopped before it could say what: so far, {UNSURE}.")
+
+
+def test_what_a_stopped_search_points_to_is_told_whether_or_not_the_error_is_above_the_noise() -> None:
+    """Seen: "stopped before it could say what" after 174 tests of the screen; which of them led was nowhere."""
+    pointed = NotTried(pointed_at=((("rotor", "quadratic_drag"), 0.981),))
+    told = "so far, the screen points to quadratic drag at rotor (98.1 %), by the share of the error over windows explained there"
+    for found in (MISSING, verdict()):
+        stopped = replace(found, complete=False, not_tried=pointed).sentence
+        assert f": {told}, which no refit has confirmed." in stopped
+        assert UNSURE in replace(found, complete=False, not_tried=pointed, unsure=UNSURE).sentence
 
 
 def test_an_error_above_the_noise_is_told_beside_nothing_missing() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shlex
 from collections.abc import Callable
 from pathlib import Path
@@ -38,6 +39,13 @@ def test_options_and_arguments_are_understood(page: str) -> None:
 def test_every_command_is_shown_by_a_page() -> None:
     named = {shlex.split(command)[1] for page in PAGES for command in shown(page)}
     assert named == set(GROUP.commands)
+
+
+@pytest.mark.parametrize("page", ["docs/howto/estimate.md", "docs/howto/diagnose.md", "docs/howto/train.md"])
+def test_pages_say_with_what_ctrl_c_ends(page: str) -> None:
+    """Seen: the reference alone had the exit code 130."""
+    text = (ROOT / page).read_text()
+    assert "Ctrl-C" in text and re.search(r"exit code\b.*\b130\b", text)
 
 
 def test_the_tutorial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

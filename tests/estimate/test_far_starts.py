@@ -48,6 +48,7 @@ def test_a_start_state_far_from_the_first_sample_is_told(start: float) -> None:
     (told,) = far_starts(begun(start))
     assert told.startswith(f"day1 is begun with T at {start:.4g} degC (first sample 22 ± 0.08)")
     assert "fixed = true" in told_far([told]) and "and 2 more experiments" in told_far([told] * 5)
+    assert "and 1 more experiment:" in told_far([told] * 4)
 
 
 def test_what_the_noise_explains_is_not() -> None:

@@ -45,7 +45,7 @@ def test_from_results(bench: Path, to: str, files: list[str]) -> None:
         "name": "actuator.actuator_deadzone.share",
         "unit": "",
         "value": 1.0,
-        "description": "",
+        "description": "whether actuator.actuator_deadzone acts: 1, or 0 where it does not",  # seen: none
     } in told["variables"]
     assert "0.4" in (bench / "results" / to / files[-1 if to == "torch" else 1]).read_text()
 

@@ -30,7 +30,7 @@ CARDS: list[tuple[Any, Any, str]] = [
     ("effects", "none", '"effects" is "none", expected a list'),
     ("free_starts", 1, '"free_starts" is 1, expected true or false'),
     ("tensors", "0" * 64, "damaged, or not the file that model.json was written with"),
-    ("title", "Engine", "a model file is run only where you name it yourself"),
+    ("title", "Engine", "not of Motor; expected a checkpoint of Motor, or Engine as the model that is named"),
 ]
 
 
@@ -107,5 +107,5 @@ def test_a_model_file_that_only_the_checkpoint_names_never_runs(
     (spoilt / "evil.py").write_text("from pathlib import Path\nPath(__file__).with_name('ran').touch()\n")
     save_checkpoint(spoilt / "model", Checkpoint(f"{spoilt}/{place}:Evil", "Evil", VALUES, UNITS))
     how = ["model"] if command == "compare" else ["--checkpoint", "model"]
-    answer(command, "dataset.toml", *how, message="a model file is run only where you name it yourself")
+    answer(command, "dataset.toml", *how, message="expected a checkpoint of Motor, or Evil as the model that is named")
     assert not (spoilt / "ran").exists()

@@ -49,6 +49,8 @@ def test_the_figure_says_what_the_physics_takes_over() -> None:
     explained: Any = SimpleNamespace(terms=(term,), own=("b", "M"))
     found: Any = SimpleNamespace(result=SimpleNamespace(problem=with_damping(8.2)))
     (line,) = taken_over(found, explained)
-    assert line == "beside coulomb_friction, b = 4 N·s/m (beside the network 8.2): that is drawn with neither curve"
+    assert line == (
+        "beside coulomb_friction is estimated b = 4 N·s/m (beside the network 8.2); what b adds is in neither curve"
+    )
     found.result.problem = with_damping(4.05)
     assert taken_over(found, explained) == []

@@ -146,12 +146,20 @@ def test_names_of_the_user_are_text(of_kind: Callable[[str], Verdict], about: Ab
     assert "Arm &amp; drive" in html
 
 
+def test_what_stands_between_backticks_is_set_as_code(of_kind: Callable[[str], Verdict], about: About) -> None:
+    """Seen: raw backticks in the report, of sentences that terminals show as well."""
+    verdict = of_kind("found")
+    html = render_page(replace(verdict, evidence=(*verdict.evidence, "Try `greybox fit <card>`, or one `.")), about)
+    assert "Try <code>greybox fit &lt;card&gt;</code>, or one `." in html
+    assert "`" not in Page(html).text.replace("or one `", "")
+
+
 def test_how_it_was_made(of_kind: Callable[[str], Verdict], about: About) -> None:
     text = Page(render_page(of_kind("found"), about)).text
     for told in ("greybox_torch 1.2.3", "2026-11-20 06:00 UTC", "Seed 7", "42 s", "screen 40 s", "robot_arm"):
         assert told in text
     assert "greybox compare dataset.toml results/arm/model" in text
-    assert "half gap gear spring: backlash 0.031000 rad" in text
+    assert "half_gap gear spring: backlash 0.031000 rad" in text
 
 
 def test_share_of_the_ceiling(of_kind: Callable[[str], Verdict], about: About) -> None:

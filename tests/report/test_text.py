@@ -3,6 +3,9 @@ from __future__ import annotations
 import math
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from markupsafe import Markup, escape
 
 from greybox_torch.report import text
 
@@ -87,12 +90,28 @@ def test_units_and_names() -> None:
     assert text.with_unit("3", "") == "3"
     assert text.axis("motor_speed", "rad/s") == "motor speed [rad/s]"
     assert text.axis("level", "") == "level"
+    assert text.axis("T_j", "degC") == "T_j [degC]", "seen: T j"
     assert text.mechanism("coulomb_asymmetry") == "Coulomb asymmetry"
     assert text.first_capital("nonlinear stiffness") == "Nonlinear stiffness"
     assert text.symbol("F_c") == "<i>F</i><sub>c</sub>"
     assert text.symbol("alpha") == "<i>α</i>"
-    assert text.symbol("half_gap") == "half gap"
+    assert text.symbol("half_gap") == "half_gap", "seen: half width beside ±half_width in the law"
+    assert text.symbol("UA_l") == "UA_l"
     assert text.symbol("<b>") == "&lt;b&gt;"
+
+
+@given(st.from_regex(r"[A-Za-z]{2,8}(_[A-Za-z0-9]{2,8}){0,3}", fullmatch=True), st.sampled_from("abTUq"))
+def test_a_name_is_words_or_a_symbol_as_it_is_written(name: str, letter: str) -> None:
+    assert "_" not in text.words(name) and text.words(name).split() == name.split("_")
+    for indexed in (f"{name}_{letter}", f"{letter}_{name}"):
+        assert text.words(indexed) == text.title(indexed) == indexed
+    assert text.words(f"{name}_1") == f"{text.words(name)} 1"
+
+
+@given(st.text(st.characters(codec="ascii", exclude_characters="`")), st.text("ab<&", min_size=1))
+def test_a_sentence_for_a_page_is_escaped_and_has_its_code(before: str, code: str) -> None:
+    told = text.prose(f"{before}`{code}`")
+    assert told == escape(before) + Markup("<code>{}</code>").format(code)
 
 
 @pytest.mark.parametrize(("value", "shown"), [(0.62, "0.6 s"), (42.3, "42 s"), (119.0, "119 s"), (135.0, "2 min 15 s")])

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from greybox_torch.api.train_explained import _not_refitted, open_sign
+from greybox_torch.api.train_explained import _not_refitted, _row, open_sign
 from greybox_torch.errors import UserError
 from greybox_torch.training import Trained, TrainingSettings, fit_physics, train_hybrid
 from greybox_torch.training.explain import Explanation, explain, needless
@@ -147,7 +147,12 @@ def test_a_law_that_cannot_be_simulated_is_told(law: Explanation) -> None:
     without = tuple(term for term in law.terms if term.attachment.mechanism.name != "quadratic_drag")
     failed = replace(law, terms=without, term=None, failed=("quadratic_drag",))
     drag = next(m for m in law.matches if m.law.name == "quadratic_drag")
-    assert _not_refitted(drag, failed) == "put there: its simulation overflows"
+    assert _not_refitted(drag, failed) == "tried in its place: the simulation overflows"
+    others = [_not_refitted(replace(drag, share=share), replace(failed, failed=())) for share in (0.4, 0.9)]
+    assert others == [
+        "not tried in its place: it matches less than 50 %",
+        "not tried in its place: others match more",
+    ], 'seen: "matches less than 0.5"'
     assert "Nothing is known of quadratic_drag: with the values that match the curve" in failed.sentence or not without
 
 
@@ -161,6 +166,10 @@ def test_a_law_without_its_effect_is_not_the_closest(law: Explanation, of_a_law:
     assert needless([nothing], of_a_law) is None
     told = replace(law, terms=(nothing,), term=None).sentence
     assert "closest" not in told and told.endswith("Keep the network.")
+    *_, row = _row(nothing)
+    assert row.startswith("no longer this law, as it was estimated with c = 0: c "), (
+        'seen: "without its effect: F_c 28 N, F_s 0 N"'
+    )
 
 
 def test_where_the_band_contains_zero_is_told(law: Explanation) -> None:

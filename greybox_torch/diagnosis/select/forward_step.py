@@ -10,6 +10,7 @@ from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.noise import floor_known
 from greybox_torch.diagnosis.hypothesis.size import size
+from greybox_torch.diagnosis.progress import Named
 from greybox_torch.diagnosis.refit.likelihood import cost_of, likelier
 from greybox_torch.diagnosis.refit.rank import rank
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate, doubtful, in_order
@@ -28,6 +29,9 @@ from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.diagnosis.stopping import Stage
 from greybox_torch.diagnosis.study import Study
+
+MOST_POINTED_AT = 3
+"""Of what a screen puts first, how many are kept for an answer without any refit."""
 
 
 def forward_step(
@@ -50,6 +54,7 @@ def forward_step(
     """
     screened = screen_scores(study, state, curves=curves and not state.has_curve, fine=fine)
     found = _worth_a_refit(study, state, screened, fine)
+    _point_at(study, state, found)
     if not fine:
         at_card = from_card(study, state, curves=curves and study.bent)
         found = with_card(found, at_card) if study.bent else with_motion(found, at_card)
@@ -57,9 +62,7 @@ def forward_step(
         found = with_found_before(study, state, found, curves=curves)
     if little_is_left(study, state):
         found = _that_may_complete(study, state, found)
-    if found and not state.effects:
-        first = max(found, key=lambda candidate: candidate.explained)
-        study.journal.pointed_at(first.attachment.named, first.explained)
+    _point_at(study, state, found)
     ranked = rank(study, state.current, found)
     further = rank(study, state.current, _at_other_ports(study, state, screened, found, ranked))
     compared = compare(study, state.current, screened, in_order([*known, *ranked, *further], study.settings))
@@ -67,6 +70,15 @@ def forward_step(
         there = with_better_fit(state, compared.parent)
         return (yield from forward_step(study, there, curves=curves, fine=fine, known=known, again=False))
     return (yield from _take(study, state, screened, compared))
+
+
+def _point_at(study: Study, state: SearchState, found: Sequence[Candidate]) -> None:
+    """Note what the screen puts first beside no effect: where the search is stopped before a step has ended, it is all that is known."""
+    shares: dict[Named, float] = {}
+    for candidate in sorted(found, key=lambda candidate: -candidate.explained):
+        shares.setdefault(candidate.attachment.named, candidate.explained)
+    if shares and not state.effects:
+        study.journal.pointed_at(*list(shares.items())[:MOST_POINTED_AT])
 
 
 def take_best(

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.lines import Line2D
 
+from greybox_torch.report.code_words import unmarked
 from greybox_torch.report.style import STYLE
 
 WIDTH, HEIGHT = 595.0, 842.0
@@ -68,7 +69,7 @@ class Sheets:
         width: float = ROOM,
     ) -> None:
         """A paragraph, broken into lines and over sheets as it has to be."""
-        for k, line in enumerate(broken(text, width - indent, size, bold)):
+        for k, line in enumerate(broken(unmarked(text), width - indent, size, bold)):
             self.need(SPACING * size)
             if bullet and k == 0:
                 self.write(bullet, MARGIN + indent - 9.0, self.top, size, colour=colour)

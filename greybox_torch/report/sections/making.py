@@ -89,7 +89,7 @@ def _values(about: About) -> list[Value]:
         rows.append(
             Value(
                 text.symbol(own),
-                owner.replace(".", ": ").replace("_", " "),
+                ": ".join(map(text.words, owner.split("."))),
                 text.number(value, 5),
                 text.unit(units.get(name, "")),
             )

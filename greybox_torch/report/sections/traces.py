@@ -168,7 +168,7 @@ def _chart(
         panels = [_signal(here, title), _error(here, last=last)]
         panels += [_input(here, one, k, last=k == len(inputs) - 1) for k, one in enumerate(inputs)]
         columns.append(tuple(panels))
-    what = text.first_capital(text.words(trace.output))
+    what = text.title(trace.output)
     caption = (
         f"{what} measured and simulated, and the error between them: {_told(trace, runs, slice(None))}.{of_inputs}"
     )

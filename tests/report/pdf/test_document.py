@@ -63,12 +63,17 @@ def test_the_page_in_print(of_kind: Callable[[str], Verdict], printed: Callable[
         assert told.index("Before and after") < told.index("What is missing") < told.index("Evidence")
         for effect in verdict.effects:
             assert effect.explanation in told and effect.where in told and effect.source in told
-        assert "half gap 0.03100 ± 0.00040 rad" in told and "nonlinear stiffness at gear_spring" in told
+        assert "half_gap 0.03100 ± 0.00040 rad" in told and "nonlinear stiffness at gear_spring" in told
         assert "The search was stopped before it was done." in told
         assert "any mechanism at gear_spring: excluded" in told
     else:
         assert "What could still hide" in told
     assert f"1 / {len(sheets.figures)}" in told and 2 <= len(sheets.figures) <= 8
+
+
+def test_sheets_have_no_backticks(of_kind: Callable[[str], Verdict], printed: Callable[[Verdict], Sheets]) -> None:
+    told = words(printed(replace(of_kind("found"), evidence=("Try `greybox fit`.",))))
+    assert "Try greybox fit." in told and "`" not in told
 
 
 def test_nothing_runs_off_a_sheet(of_kind: Callable[[str], Verdict], printed: Callable[[Verdict], Sheets]) -> None:

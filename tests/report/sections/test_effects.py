@@ -18,7 +18,7 @@ def test_a_named_effect(of_kind: Callable[[str], Verdict]) -> None:
     assert (card.title, card.port, card.explained, card.unknown) == ("Backlash", "gear_spring", "97 %", False)
     assert (card.size, card.equation) == ("90 %", "the spring at gear_spring sees 0")
     (row,) = card.parameters
-    assert (row.symbol, row.value, row.unit) == ("half gap", "0.03100 ± 0.00040", "rad")
+    assert (row.symbol, row.value, row.unit) == ("half_gap", "0.03100 ± 0.00040", "rad")
     assert [(s.mechanism, round(s.probability, 3)) for s in card.shares] == [
         ("backlash", 0.94),
         ("nonlinear stiffness", 0.04),
