@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
+from greybox_torch.data.own_samples import missing_samples
 from greybox_torch.report.style import (
     MOST_PANELS,
     STYLE,
@@ -79,7 +80,7 @@ def _plot(axes: Axes, recording: Recording, channel: Channel, seconds: float) ->
     if lone.any():
         axes.plot(time[lone], values[lone], ".", color="tab:blue", markersize=2.0)
     axes.margins(x=0)
-    missing = time[np.isnan(values)]
+    missing = time[missing_samples(recording, channel.name)]
     if missing.size:
         foot = axes.get_xaxis_transform()
         axes.plot(missing, np.zeros_like(missing), "|", color="tab:red", markersize=8, transform=foot)
