@@ -54,7 +54,8 @@ def draft_card(
     """
     files = tuple(recorded(path) for path in paths)
     given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
-    clocks = [given or clock_of(file) for file in files]
+    channels = [] if model is None else wanted_of(model)
+    clocks = [given or clock_of(file, [channel.name for channel in channels]) for file in files]
     runs = runs_of(files, clocks, model)
     first = runs[0]
     lines = [
@@ -79,7 +80,7 @@ def draft_card(
     missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
     if first.clock.column is None and first.clock.sample_time is None:
         missing.insert(0, f"sample_time: {first.clock.remark}")
-    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted_of(model))):
+    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(channels)):
         missing.append(what_to_do)
     channels = tuple(_remarked(runs, draft) for draft in first.table.channels)
     return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, channels, tuple(missing))
