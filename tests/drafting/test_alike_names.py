@@ -47,7 +47,7 @@ def drafted(folder: Path, model: gt.GreyBoxModel, names: tuple[str, ...]) -> dic
     return {row["channel"]: row for row in gt.card(folder / "run.csv", model).rows}
 
 
-@pytest.mark.parametrize("names", permutations(["power", "reactor temp [degC]", "jacket temp [degC]"]))
+@pytest.mark.parametrize("names", list(permutations(["power", "reactor temp [degC]", "jacket temp [degC]"])))
 def test_a_column_called_as_a_port_is_the_level_there(tmp_path: Path, names: tuple[str, ...]) -> None:
     """Seen: both exchanged, with the words of a guess that nothing speaks against."""
     rows = drafted(tmp_path, Vessel(), names)
@@ -55,7 +55,7 @@ def test_a_column_called_as_a_port_is_the_level_there(tmp_path: Path, names: tup
     assert "fits as well" not in rows["T"]["remark"] + rows["T_j"]["remark"]
 
 
-@pytest.mark.parametrize("names", permutations(["power", "reactor temp [degC]", "jacket temp [degC]"]))
+@pytest.mark.parametrize("names", list(permutations(["power", "reactor temp [degC]", "jacket temp [degC]"])))
 def test_where_nothing_tells_them_apart_each_is_said_to_fit_as_well(tmp_path: Path, names: tuple[str, ...]) -> None:
     rows = drafted(tmp_path, Unnamed(), names)
     both = {rows["T"]["column"], rows["T_j"]["column"]}
