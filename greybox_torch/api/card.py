@@ -17,6 +17,7 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
 from greybox_torch.drafting.further_runs import own_columns
+from greybox_torch.drafting.one_position import on_card
 from greybox_torch.drafting.runs import names_of
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
@@ -65,7 +66,7 @@ class CardResult(DraftedFile):
         return {
             "schema": "greybox-card/1",
             "card": str(self.path),
-            "time": clock.column,
+            "time": None if clock.column is None else on_card(clock.column),
             "date": clock.date or None,
             "time_unit": clock.unit if clock.column is not None else None,
             "sample_time": clock.sample_time,

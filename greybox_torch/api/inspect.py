@@ -13,10 +13,12 @@ from rich.text import Text
 
 from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.data_warnings import all_warnings
+from greybox_torch.api.notes_of_recordings import told_once
 from greybox_torch.api.result import HELD_OUT, Result
 from greybox_torch.checking.constant_channels import rests
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import DataWarning
+from greybox_torch.data.own_samples import missing_samples, own_samples, own_step
 from greybox_torch.keywords import names_checked
 from greybox_torch.name_lists import brief
 from greybox_torch.report import notebook
@@ -110,12 +112,12 @@ class InspectionResult(Result):
     def _channels(self, recording: Recording) -> dict[str, dict[str, Any]]:
         return {
             name: {
-                "samples": len(values),
-                "sample_time": recording.sample_time,
+                "samples": int(own_samples(recording, name).sum()),
+                "sample_time": own_step(recording, name),
                 "min": float(np.nanmin(values)),
                 "max": float(np.nanmax(values)),
                 "std": 0.0 if rests(recording, name) else float(np.nanstd(values)),
-                "missing": int(np.isnan(values).sum()),
+                "missing": int(missing_samples(recording, name).sum()),
                 "unit": self.data.channels[name].unit,
             }
             for name, values in recording.signals.items()
@@ -129,11 +131,7 @@ class InspectionResult(Result):
         return rows
 
     def _notes(self) -> list[str]:
-        alike: dict[str, list[str]] = {}
-        for recording in self.data.recordings:
-            for note in recording.notes:
-                alike.setdefault(note, []).append(recording.name)
-        notes = [f"{brief(names)}: {note}." for note, names in alike.items()]
+        notes = told_once(self.data.recordings)
         notes += [f"warning: {self.data.place()}: {found}" for found in self.warnings]
         notes += self._without_unit()
         notes += [HELD_OUT] if self.data.held_out_by_default else []

@@ -14,7 +14,7 @@ from greybox_torch.api.arguments import check_experiment
 from greybox_torch.api.data_argument import Data
 from greybox_torch.api.result import Result
 from greybox_torch.api.simulate import START, simulate
-from greybox_torch.estimate.residuals import Correlation, Residuals
+from greybox_torch.estimate.residuals import Correlation, Residuals, is_slower
 from greybox_torch.evaluation import Evaluation
 from greybox_torch.keywords import names_checked
 from greybox_torch.model import GreyBoxModel
@@ -111,7 +111,9 @@ class ResidualResult(Result):
 
     @property
     def _notes(self) -> tuple[str, ...]:
-        return _EXPLANATION, read(self.tests, diagnosed=bool(self.run.problem.model.effects_told()))
+        slower = list(dict.fromkeys(test.output.name for test in self.tests if is_slower(test.errors)))
+        own = [f"{listed(slower)}: sampled more slowly than the rest, lags are in its own samples."] if slower else []
+        return _EXPLANATION, *own, read(self.tests, diagnosed=bool(self.run.problem.model.effects_told()))
 
     @property
     def _title(self) -> str:

@@ -176,7 +176,10 @@ def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) ->
             return read(file, tuple(wanted))
         except NoSuchColumn as error:
             if error.column == time:
-                said = f"{error}; files that are joined in time have their time stamps in a column of one name"
+                said = (
+                    f"{error}; files that are joined in time have their time stamps in a column of one name; else give its "
+                    "position, where that is one in all of them: time = 1 for the first column of each"
+                )
                 raise NoSuchColumn(said, time) from None
             if error.column not in wanted:
                 raise

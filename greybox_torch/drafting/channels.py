@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +16,7 @@ from greybox_torch.data.unwrapping import turn_within, unwrapped
 from greybox_torch.drafting.clock import SECONDS, Clock
 from greybox_torch.drafting.likened import likened, of_the_same_last_name
 from greybox_torch.drafting.magnitudes import slips
-from greybox_torch.drafting.matching import Wanted, letter_unit, matched, words
+from greybox_torch.drafting.matching import Wanted, also_fitting, letter_unit, matched, words
 from greybox_torch.drafting.recorded import Recorded
 from greybox_torch.model import Body, GreyBoxModel
 
@@ -55,8 +55,13 @@ def wanted_of(model: GreyBoxModel) -> list[Wanted]:
     """The inputs and outputs of a model."""
     return [
         *(Wanted(i.name, i.unit, True) for i in model.inputs),
-        *(Wanted(o.name, o.unit, False) for o in model.outputs),
+        *(Wanted(o.name, o.unit, False, _ports_of(o.name, model)) for o in model.outputs),
     ]
+
+
+def _ports_of(output: str, model: GreyBoxModel) -> tuple[str, ...]:
+    """The ports of which the state that is called as an output is a signal."""
+    return tuple(port.name for port in model.ports if output in port.signals.values())
 
 
 def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None, first: Drafted | None = None) -> Drafted:
@@ -76,11 +81,18 @@ def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None, first: Dra
         return Drafted(tuple(Draft(_channel_name(name), units.get(name, ""), name) for name in columns))
     wanted = wanted_of(model)
     bare = _bare(columns)
-    found = {channel: bare[name] for channel, name in matched(wanted, list(bare), _by(bare, units)).items()}
+    by_name = matched(wanted, list(bare), _by(bare, units))
+    alike_named = also_fitting(wanted, list(bare), _by(bare, units), by_name)
+    found = {channel: bare[name] for channel, name in by_name.items()}
     found |= alike if first is None else alike | of_the_same_last_name(first.columns, found | alike, columns)
     found |= {channel: other for channel, column in found.items() if (other := _counting_on(file, column, columns))}
     suspected = _suspected(file, clock, model, wanted, found)
-    channels = tuple(_draft(channel, found, units, suspected, columns) for channel in wanted)
+    doubts = {
+        channel: f'please check: guessed from the name, which "{bare[other]}" fits as well'
+        for channel, other in alike_named.items()
+        if found.get(channel) == bare[by_name[channel]]
+    }
+    channels = tuple(_draft(channel, found, units, suspected, columns, doubts) for channel in wanted)
     return Drafted(channels, tuple(name for name in columns if name not in found.values()))
 
 
@@ -106,8 +118,14 @@ def _by(bare: dict[str, str], units: dict[str, str]) -> dict[str, str]:
 
 
 def _draft(
-    channel: Wanted, found: dict[str, str], units: dict[str, str], suspected: dict[str, str], columns: Sequence[str]
+    channel: Wanted,
+    found: dict[str, str],
+    units: dict[str, str],
+    suspected: dict[str, str],
+    columns: Sequence[str],
+    doubts: Mapping[str, str],
 ) -> Draft:
+    """``doubts``: what to say by channel where another column's name fits as well."""
     column = found.get(channel.name)
     if is_angle(channel.unit) and (counts := _counts(column, found, units, columns)):
         told = "how many counts has a turn? Write them for 65536"
@@ -121,7 +139,11 @@ def _draft(
         return Draft(channel.name, channel.unit, None, remark=told)
     unit = units.get(column, "") or _gravity(column, channel.unit)
     certain = any(words(name) == words(channel.name) for name in (column, without_ending(column)))
-    doubt = "" if certain or column.lower() == channel.name.lower() else "please check: guessed from the name"
+    doubt = (
+        ""
+        if certain or column.lower() == channel.name.lower()
+        else doubts.get(channel.name, "please check: guessed from the name")
+    )
     if unit and channel.unit and slip(unit, channel.unit) is not None:
         told = "converted from the unit that the file says" if column in units else f"in {unit}, as its name ends"
         return Draft(channel.name, channel.unit, column, unit, f"{told}; {doubt}" if doubt else told)

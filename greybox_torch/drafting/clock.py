@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from greybox_torch.data.column_units import without_ending
 from greybox_torch.data.gaps import Gap, longest_gap
 from greybox_torch.data.readers.time_stamps import UNDERSTOOD
 from greybox_torch.data.steps import EVEN, even_step, unevenness
 from greybox_torch.data.summer_time import clock_set_back, instead_of_summer_time
 from greybox_torch.data.time_units import unit_of_time
+from greybox_torch.drafting.matching import words
 from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(
@@ -61,19 +64,25 @@ class Clock:
     said: bool = True
 
 
-def clock_of(file: Recorded) -> Clock:
-    """The clock of a file, as far as names and numbers tell."""
-    clock = _without_date(file)
+def clock_of(file: Recorded, channels: Collection[str] = ()) -> Clock:
+    """The clock of a file, as far as names and numbers tell.
+
+    Args:
+        channels: of the model. A column that is called as one of them is no clock for rising evenly, as an input may; neither is the only
+            column of a file.
+    """
+    clock = _without_date(file, [words(channel) for channel in channels])
     date = file.dates.get(clock.column or "", "")
     order = file.orders.get(date or clock.column or "")
     told = f"; {order.note}" if order and order.note and not clock.broken else ""
     return replace(clock, date=date, remark=f"{clock.remark}{told}")
 
 
-def _without_date(file: Recorded) -> Clock:
+def _without_date(file: Recorded, channels: Collection[list[str]]) -> Clock:
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
     named = [name for name in rising if name in file.stamps or named_like_a_clock(name)]
-    other = [name for name in rising if is_clock(rising[name]) and _comes_first(name, file)]
+    free = [name for name in rising if len(file.columns) > 1 and words(without_ending(name)) not in channels]
+    other = [name for name in free if is_clock(rising[name]) and _comes_first(name, file)]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
     for name, value in file.numbers.items():

@@ -38,14 +38,21 @@ _GRAVITY = "g"
 SURE = 0.5
 """Score from which a column is taken for a channel."""
 
+_OF_ITS_PORT = 0.1
+"""What a word of the port adds to the score: the temperature of a jacket is called after it sooner than after its letter."""
+
+_ALIKE_FITTING = 0.05
+"""Difference of scores up to which two columns fit alike."""
+
 
 @dataclass(frozen=True)
 class Wanted:
-    """An input or output of the model."""
+    """An input or output of the model; ``ports`` are those whose level, speed, position or deflection it is."""
 
     name: str
     unit: str
     is_input: bool
+    ports: tuple[str, ...] = ()
 
 
 def matched(wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str, str]) -> dict[str, str]:
@@ -62,6 +69,29 @@ def matched(wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str
         if -negative >= SURE and wanted[i].name not in found and columns[k] not in found.values():
             found[wanted[i].name] = columns[k]
     return found | _only_ones_left(wanted, columns, units, found)
+
+
+def also_fitting(
+    wanted: Sequence[Wanted], columns: Sequence[str], units: Mapping[str, str], found: Mapping[str, str]
+) -> dict[str, str]:
+    """By channel another column whose name fits as well as the one that was ``found``: a free one, or one of another channel if the two can
+    be exchanged.
+    """
+    of = {column: name for name, column in found.items()}
+    scores = {
+        (channel.name, column): _score(channel, column, units.get(column, ""), wanted)
+        for channel in wanted
+        for column in columns
+    }
+    alike: dict[str, str] = {}
+    for name, own in found.items():
+        for column in columns:
+            other = of.get(column, "")
+            least = scores[name, own] + (scores[other, column] if other else 0.0) - _ALIKE_FITTING
+            instead = [scores[name, column], *([scores[other, own]] if other else [])]
+            if column != own and min(instead) >= SURE and sum(instead) >= least:
+                alike.setdefault(name, column)
+    return alike
 
 
 def _only_ones_left(
@@ -105,6 +135,8 @@ def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) ->
         score *= 0.3  # tau1 is not tau2
     if unit and channel.unit:
         score += 0.25 if fits(unit, channel.unit) else -0.4
+    if any(set(theirs) & set(words(port)) for port in channel.ports):
+        score += _OF_ITS_PORT
     return score
 
 

@@ -12,6 +12,7 @@ from pathlib import Path
 from greybox_torch.data.processing import at_times
 from greybox_torch.drafting.channels import Drafted, drafted, wanted_of
 from greybox_torch.drafting.clock import Clock
+from greybox_torch.drafting.one_position import by_position
 from greybox_torch.drafting.recorded import Recorded
 from greybox_torch.model import GreyBoxModel
 
@@ -58,8 +59,21 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
         by_clock.setdefault((run.clock.column, run.clock.unit), []).append(run)
     if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
         return tuple(alone)
-    made = [*whole, *(run for parts in by_clock.values() for run in _of_loggers(parts, model))]
+    apart = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
+    made = [*whole, *(_of_other_names(apart, model) if len(by_clock) > 1 else apart)]
     return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
+
+
+def _of_other_names(apart: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
+    """The runs that single files make up whose time stamps have another name in each, at one position; as they are where none does."""
+    single = [run for run in apart if len(run.files) == 1]
+    places = by_position([run.whole for run in single], [run.clock for run in single])
+    renamed = [replace(run, whole=file, clock=clock) for run, (file, clock) in zip(single, places, strict=False)]
+    joined = _of_loggers(renamed, model) if renamed else []
+    if all(len(run.files) == 1 for run in joined):
+        return apart
+    used = {file.path for run in joined if len(run.files) > 1 for file in run.files}
+    return [*(run for run in joined if len(run.files) > 1), *(run for run in apart if run.files[0].path not in used)]
 
 
 def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
@@ -91,7 +105,8 @@ def apart(runs: Sequence[Run]) -> str:
             names = [one.files[0].path.name for one in (first, run)]
             return (
                 f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
-                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in a column of one name and in one unit'
+                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in one unit, in a column of one '
+                "name or at one position (time = 1 for the first of each)"
             )
     return ""
 

@@ -29,6 +29,8 @@ NORMAL_99 = 2.58
 class Correlation:
     """A normalised correlation function: ``values`` (L,) at ``lags`` (L,) in samples, and the 99 % ``bound`` of each value.
 
+    Samples are those of the errors' sensor, where that is slower than the recording (:func:`is_slower`).
+
     If there is nothing to find, each value lies within ± bound with a probability of 99 %.
     """
 
@@ -85,7 +87,11 @@ def residuals_of(recording: Recording, output: Channel, simulated: np.ndarray, i
 
 
 def whiteness(errors: np.ndarray, lags: int = LAGS) -> Correlation:
-    """Autocorrelation of prediction errors (N,) at the lags 1 … ``lags``, with the bound 2.58 / √N of white noise."""
+    """Autocorrelation of prediction errors (N,) at the lags 1 … ``lags``, with the bound 2.58 / √N of white noise.
+
+    Those of a slower sensor (:func:`is_slower`) are taken as they follow each other.
+    """
+    (errors,) = _own_samples(errors)
     known = ~np.isnan(errors)
     filled = np.where(known, errors, 0.0)
     covariance = _covariance(filled, filled)
@@ -101,8 +107,9 @@ def input_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) 
     At a positive lag k it is that of e(t) with u(t − k): a model with the right dynamics leaves none. At negative lags it is that with
     future inputs, for the eye and not tested: it betrays feedback where the input is white (else :func:`feedback_correlation`). The
     bound allows for the colour of both signals, 2.58 √(P / N) with P = Σ_k R_e(k) R_u(k) over the lags up to N/4, tapered; the input's
-    mean is removed.
+    mean is removed. Where the errors are of a slower sensor (:func:`is_slower`), lags are in its samples.
     """
+    errors, signal = _own_samples(errors, signal)
     filled = np.where(np.isnan(errors), 0.0, errors)
     centred = np.where(np.isnan(signal), 0.0, signal - _mean(signal))
     count, middle, reach = len(errors), len(errors) - 1, _reach(errors, lags)
@@ -117,6 +124,21 @@ def input_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) 
     taper = 1.0 - np.abs(np.arange(near.start, near.stop) - middle) / (widest + 1)
     spread = float(np.sum(taper * of_errors[near] * of_signal[near])) / size**2
     return Correlation(steps, values, NORMAL_99 * float(np.sqrt(spread / count)))
+
+
+def is_slower(errors: np.ndarray) -> bool:
+    """Whether errors (N,) are of a sensor that is slower than the recording: hardly any two of its samples are in a row.
+
+    Counted in samples of the recording there were lags without any pair, and others with a pair for one in two samples.
+    """
+    there = np.flatnonzero(~np.isnan(errors))
+    return len(there) > 1 and bool(np.median(np.diff(there)) > 1)
+
+
+def _own_samples(errors: np.ndarray, *signals: np.ndarray) -> tuple[np.ndarray, ...]:
+    """Errors and signals (N,) where a slower sensor has samples; as they are of another."""
+    there = ~np.isnan(errors) if is_slower(errors) else slice(None)
+    return tuple(values[there] for values in (errors, *signals))
 
 
 def feedback_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) -> Correlation:

@@ -10,7 +10,17 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.data import Channel, DataSet, Recording
-from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
+from greybox_torch.data.own_samples import missing_samples
+from greybox_torch.report.style import (
+    MOST_PANELS,
+    STYLE,
+    alone,
+    broken_at_gaps,
+    dots_within,
+    shown_of,
+    since_start,
+    with_unit,
+)
 from greybox_torch.report.time_axis import time_unit
 
 _MOST_COLUMNS = 3
@@ -62,21 +72,15 @@ def plot_channels(data: DataSet, along: str = "") -> Figure:
     return figure
 
 
-def _alone(values: np.ndarray) -> np.ndarray:
-    """Which of the samples (N,) stand between two missing ones, through which no line goes."""
-    gone = np.concatenate([[True], np.isnan(values), [True]])
-    return gone[:-2] & ~gone[1:-1] & gone[2:]
-
-
 def _plot(axes: Axes, recording: Recording, channel: Channel, seconds: float) -> None:
     """``seconds`` is one unit of the time axis."""
     values, time = recording.signals[channel.name], since_start(recording) / seconds
     axes.plot(*broken_at_gaps(time, values), linewidth=0.7)
-    alone = _alone(values)
-    if alone.any():
-        axes.plot(time[alone], values[alone], ".", color="tab:blue", markersize=2.0)
+    lone = alone(values)
+    if lone.any():
+        axes.plot(time[lone], values[lone], ".", color="tab:blue", markersize=2.0)
     axes.margins(x=0)
-    missing = time[np.isnan(values)]
+    missing = time[missing_samples(recording, channel.name)]
     if missing.size:
         foot = axes.get_xaxis_transform()
         axes.plot(missing, np.zeros_like(missing), "|", color="tab:red", markersize=8, transform=foot)

@@ -10,7 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from greybox_torch.estimate.residuals import Correlation, Residuals
-from greybox_torch.report.style import MOST_PANELS, STYLE, broken_at_gaps, dots_within, shown_of, since_start, with_unit
+from greybox_torch.report.style import (
+    MOST_PANELS,
+    STYLE,
+    alone,
+    broken_at_gaps,
+    dots_within,
+    shown_of,
+    since_start,
+    with_unit,
+)
 from greybox_torch.report.time_axis import time_unit
 
 
@@ -53,7 +62,10 @@ def _label_once(axes: np.ndarray) -> None:
 
 def _plot_errors(axes: Axes, row: Residuals) -> None:
     unit = time_unit(row.recording.seconds)
-    axes.plot(*broken_at_gaps(since_start(row.recording) / unit.seconds, row.errors), linewidth=0.6)
+    time, lone = since_start(row.recording) / unit.seconds, alone(row.errors)
+    axes.plot(*broken_at_gaps(time, row.errors), linewidth=0.6)
+    if lone.any():
+        axes.plot(time[lone], row.errors[lone], ".", color="tab:blue", markersize=2.0)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")
     axes.set_xlabel(unit.label)

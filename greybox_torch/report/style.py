@@ -35,6 +35,12 @@ def broken_at_gaps(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np
     return np.insert(time, after, time[after - 1]), np.insert(values.astype(float), after, np.nan)
 
 
+def alone(values: np.ndarray) -> np.ndarray:
+    """Which of the samples (N,) stand between two missing ones, through which no line goes."""
+    gone = np.concatenate([[True], np.isnan(values), [True]])
+    return gone[:-2] & ~gone[1:-1] & gone[2:]
+
+
 def with_unit(name: str, unit: str) -> str:
     """A label for an axis."""
     return f"{name} [{unit}]" if unit else name

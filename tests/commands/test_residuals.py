@@ -118,3 +118,12 @@ def test_a_model_with_effects_is_not_sent_to_the_diagnosis_that_it_comes_from() 
     )
     assert read([row]).endswith("such as friction (`greybox diagnose` looks for the latter).")
     assert read([row], diagnosed=True).endswith("such as friction.")
+
+
+def test_lags_of_a_slower_output_are_told_to_be_in_its_own_samples(data_set) -> None:
+    rng = np.random.default_rng(0)
+    recorded = {"voltage": rng.uniform(-1, 1, 600), "speed": 0.1 * rng.standard_normal(600)}
+    slow = {**recorded, "speed": np.where(np.arange(600) % 4 == 0, recorded["speed"], np.nan)}
+    for run, slower in ((recorded, False), (slow, True)):
+        told = str(residuals(Motor(), data_set({"voltage": "V", "speed": "rad/s"}, [run])))
+        assert ("speed: sampled more slowly than the rest, lags are in its own samples." in told) == slower

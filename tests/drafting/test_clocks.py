@@ -120,3 +120,19 @@ def test_dates_in_a_column_of_their_own(tmp_path: Path) -> None:
     card.save()
     data = gt.load_dataset(tmp_path / "dataset.toml")
     assert data.recordings[0].seconds == pytest.approx(30.0)
+
+
+@pytest.mark.parametrize("columns", [("voltage",), ("voltage", "speed")])
+@pytest.mark.parametrize("with_model", [True, False])
+def test_a_column_of_a_channel_is_no_clock_for_rising_evenly(
+    tmp_path: Path, machines: Path, columns: tuple[str, ...], with_model: bool
+) -> None:
+    """Seen: a file of one column, the ramp of an input, taken for time stamps; "no column fits" that input."""
+    rows = [",".join([str(k), "0.5"][: len(columns)]) for k in range(1, 100)]
+    (tmp_path / "one.csv").write_text("\n".join([",".join(columns), *rows]))
+    (tmp_path / "motor.py").write_text((machines / "motor.py").read_text())
+    model = f"{tmp_path / 'motor.py'}:Motor" if with_model else None
+    card = gt.card(tmp_path / "one.csv", model)
+    taken = len(columns) > 1 and not with_model  # where loggers have the time, of which no name says anything else
+    assert ("time = " in card.text.replace("sample_time = ", "")) == taken
+    assert ({row["channel"]: row["column"] for row in card.rows}.get("voltage") == "voltage") != taken

@@ -71,9 +71,9 @@ def test_one_run_without_a_model(tmp_path: Path) -> None:
     assert [r.rows for r in data.recordings] == [(0, 75), (75, 100)]
 
 
-@pytest.mark.parametrize("apart", ["time", "clock", "names"])
+@pytest.mark.parametrize("apart", ["time", "names"])
 def test_what_may_be_no_run_is_not_joined(tmp_path: Path, apart: str) -> None:
-    first(tmp_path / "a.txt", clock="t" if apart == "clock" else "Time")
+    first(tmp_path / "a.txt")
     second(tmp_path / "b.txt", start=1e5 if apart == "time" else 0.3)
     files = [tmp_path / "a.txt", tmp_path / "b.txt"]
     if apart == "names":  # which belongs to which?

@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from greybox_torch.estimate.residuals import feedback_correlation, input_correlation, whiteness
+from greybox_torch.estimate.residuals import feedback_correlation, input_correlation, is_slower, whiteness
 
 Noise = Callable[[np.random.Generator, int], np.ndarray]
 
@@ -123,3 +125,21 @@ def test_an_input_without_anything_new() -> None:
     assert feedback_correlation(white(rng, 2000), periodic(rng, 2000)).largest == 0.0
     assert feedback_correlation(white(rng, 2000), np.full(2000, 3.0)).largest == 0.0
     assert feedback_correlation(np.full(40, np.nan), white(rng, 40)).largest == 0.0
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.floats(1.6, 9.0), st.integers(0, 100))
+def test_lags_of_a_slower_sensor_are_in_its_own_samples(ratio: float, seed: int) -> None:
+    """Seen: 0, 0.5, 0.5, 0, 1, 0 … over the lag, of a sensor with a sample in 2 and 3 rows in turn."""
+    rng = np.random.default_rng(seed)
+    rows = np.unique(np.rint(np.arange(0, 4000, ratio)).astype(int))
+    known, u = coloured(rng, len(rows)), coloured(rng, int(rows[-1]) + 1)
+    errors = np.full(len(u), np.nan)
+    errors[rows] = known
+    assert is_slower(errors) and not is_slower(u)
+    for found, own in (
+        (whiteness(errors), whiteness(known)),
+        (input_correlation(errors, u), input_correlation(known, u[rows])),
+    ):
+        np.testing.assert_array_equal(found.values, own.values)
+        assert (found.bound, found.tested) == (own.bound, own.tested)

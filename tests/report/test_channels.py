@@ -55,6 +55,18 @@ def test_residuals_label_a_column_once() -> None:
     assert [axes.get_xlabel() for axes in figure.axes].count("lag [samples]") == 2 and figure.get_figheight() < 16.0
 
 
+def test_residuals_between_missing_ones_are_dots() -> None:
+    """Seen: an empty panel for a sensor that is slower than the rest."""
+    found = Correlation(np.arange(3), np.zeros(3), 0.1)
+    run = Recording.from_arrays("run", {"speed": np.zeros(12)}, sample_time=0.1)
+    errors = np.where(np.arange(12) % 3 == 0, 1.0, np.nan)
+    row = SimpleNamespace(
+        recording=run, output=Channel("speed", "rad/s"), errors=errors, whiteness=found, inputs={"u": found}
+    )
+    dots = plot_residuals(cast(list[Residuals], [row]), "title").axes[0].lines[1]
+    assert dots.get_marker() == "." and np.asarray(dots.get_ydata()).tolist() == [1.0] * 4
+
+
 def test_time_axes_begin_at_0(bench: Path) -> None:
     """Stamps may be dates, of which seconds since 1970 nobody can read from an axis."""
     data = load_dataset(bench / "dataset.toml")

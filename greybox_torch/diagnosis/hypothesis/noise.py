@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 
+from greybox_torch.diagnosis.hypothesis.differences import differences, of_white_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
@@ -80,39 +81,27 @@ def _floor(problem: Problem, order: int) -> float:
 
 
 def _measured_floor(records: Records, weights: np.ndarray, order: int) -> float:
-    factor = float((_binomial(order) ** 2).sum())
     squares, count = 0.0, 0
     for e in range(len(records.first)):
-        y = records.y[:, records.span(e)] * weights[:, None]
-        rough = np.diff(y, order, axis=1)
-        known = rough[~np.isnan(rough)]
-        squares, count = squares + float((known**2).sum()), count + known.size
-        for slow in y[np.isnan(rough).all(axis=1)]:
-            apart = _differences(slow, order)
-            squares, count = squares + float((apart**2).sum()), count + apart.size
-    return squares / factor / max(count, 1)
+        for y, weight in zip(records.y[:, records.span(e)], weights, strict=True):
+            rough = weight * differences(y, records.time(e), order)
+            squares, count = squares + float((rough**2).sum()), count + rough.size
+    return squares / of_white_noise(order) / max(count, 1)
 
 
 def output_floors(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
     """The variance (E, n_y) of white sensor noise by the high-frequency floor of every output, in its unit; NaN where unknown."""
     records, order = problem.records, settings.noise_differences
-    spans = [records.span(e) for e in range(len(records.first))]
-    found = np.array([[_rough(y, order) for y in records.y[:, span]] for span in spans])
-    found /= float((_binomial(order) ** 2).sum())
+    found = np.array([_of_outputs(records, e, order) for e in range(len(records.first))])
+    found /= of_white_noise(order)
     return found if problem.most_noise is None else np.minimum(found, problem.most_noise)
 
 
-def _rough(y: np.ndarray, order: int) -> float:
-    """The mean square of the differences of samples (N,) in a row; NaN where there are none."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # an output that is missing throughout an experiment
-        in_a_row = np.diff(y, order)
-        return float(np.nanmean((_differences(y, order) if np.isnan(in_a_row).all() else in_a_row) ** 2))
-
-
-def _differences(slow: np.ndarray, order: int) -> np.ndarray:
-    """Those of the samples (N,) that are there, for an output from a slower file, of which no few in a row are."""
-    return np.diff(slow[~np.isnan(slow)], order)
+def _of_outputs(records: Records, experiment: int, order: int) -> list[float]:
+    """The mean squares (n_y,) of the differences of the outputs in an experiment; NaN where there are none."""
+    time, rows = records.time(experiment), records.y[:, records.span(experiment)]
+    rough = (differences(y, time, order) for y in rows)
+    return [float(np.mean(r**2)) if r.size else np.nan for r in rough]
 
 
 def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
@@ -120,10 +109,3 @@ def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarr
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
         return np.nanmean(output_floors(problem, settings), axis=0)
-
-
-def _binomial(order: int) -> np.ndarray:
-    row = np.ones(1)
-    for _ in range(order):
-        row = np.convolve(row, [1.0, -1.0])
-    return row

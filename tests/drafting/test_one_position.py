@@ -1,0 +1,66 @@
+"""Loggers that call their time stamps differently: a card names the column by its position."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import greybox_torch as gt
+
+
+class Axis(gt.GreyBoxModel):
+    states = [gt.State("position", "m")]
+    inputs = [gt.Input("current", "A")]
+    outputs = [gt.Output("position", "m"), gt.Output("speed", "m/s")]
+
+
+def log(path: Path, clock: str, start: float, step: float, names: tuple[str, ...], *, last: bool = False) -> None:
+    """A log of 12 s that begins at ``start``, with its clock in the first column, or in the ``last``."""
+    rows, time = [], start + np.arange(0.0, 12.0, step)
+    for t in time:
+        cells = [f"{np.sin(t + k):.5f}" for k in range(len(names))]
+        rows.append([*cells, f"{t:.4f}"] if last else [f"{t:.4f}", *cells])
+    head = [*names, clock] if last else [clock, *names]
+    path.write_text("\n".join(",".join(row) for row in [head, *rows]))
+
+
+def two_loggers(folder: Path, second: str, *, last: bool = False) -> list[Path]:
+    for k, run in enumerate("AB"):
+        log(folder / f"drive_{run}.csv", "Zeit", 100.0 * k, 0.02, ("current", "speed"))
+        log(folder / f"scale_{run}.csv", second, 100.0 * k + 0.004, 0.05, ("position",), last=last)
+    return sorted(folder.glob("*.csv"))
+
+
+def test_time_stamps_of_other_names_at_one_position_are_joined(tmp_path: Path) -> None:
+    """Seen: "position: no column fits", of a file with a column of that name; the logs had to be edited to be joined."""
+    card = gt.card(two_loggers(tmp_path, "time"), Axis())
+    assert not card.open, card.open
+    assert 'time = 1    # column 1 of each file, which is called "Zeit" or "time"; ' in card.text
+    assert 'file = ["drive_A.csv", "scale_A.csv"]\njoin = "time"' in card.text
+    assert card.to_dict()["time"] == 1
+    card.save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert [(r.name, r.role) for r in data.recordings] == [("A", "estimation"), ("B", "validation")]
+    known = data.recordings[0].measured("position")
+    np.testing.assert_allclose(
+        known[2:-2][~np.isnan(known[2:-2])], np.sin(data.recordings[0].time)[2:-2][~np.isnan(known[2:-2])], atol=1e-3
+    )
+
+
+def test_one_name_stays_a_name(tmp_path: Path) -> None:
+    assert 'time = "Zeit"' in gt.card(two_loggers(tmp_path, "Zeit"), Axis()).text
+
+
+def test_at_other_positions_what_to_do_is_said(tmp_path: Path) -> None:
+    card = gt.card(two_loggers(tmp_path, "time", last=True), Axis())
+    assert any("at one position (time = 1 for the first of each)" in line for line in card.open)
+
+
+def test_a_name_that_one_of_the_files_lacks_is_told_with_what_to_write(tmp_path: Path) -> None:
+    gt.card(two_loggers(tmp_path, "time"), Axis()).save()
+    place = tmp_path / "dataset.toml"
+    place.write_text(place.read_text().replace("time = 1 ", 'time = "Zeit" '))
+    with pytest.raises(gt.UserError, match=r'no column "Zeit".*time = 1 for the first column of each'):
+        gt.load_dataset(place)
