@@ -6,7 +6,6 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
-from greybox_torch.checking.coupling_signs import pushes_on
 from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails, told
@@ -17,6 +16,7 @@ from greybox_torch.checking.names import declared_names, exchanged_arguments, le
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
 from greybox_torch.checking.points import Points, points_of, start_of, wide_points
+from greybox_torch.checking.port_signs import turned_ports
 from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
 from greybox_torch.errors import UserError
@@ -108,6 +108,8 @@ def _run(
         found.append(never_finite(model, points, starts(model) if starts else [start_of(model, {})], source))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
-    found += [*heat_against_the_fall(model, points, source), *pushes_on(model, points, source)]
+    found += heat_against_the_fall(model, points, source)
+    if not any(negative_masses(model, source)):  # pushed, these go the other way by themselves
+        found += turned_ports(model, points, source)
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)
