@@ -11,8 +11,8 @@ import numpy as np
 from greybox_torch.diagnosis.at_bounds import own_at_bounds
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
 from greybox_torch.diagnosis.effect import Effect
+from greybox_torch.diagnosis.not_tried import NotTried
 from greybox_torch.diagnosis.of_no_use import of_no_use
-from greybox_torch.diagnosis.one_of import spoken_at
 from greybox_torch.diagnosis.own_parameters import Estimate, determined_together
 from greybox_torch.diagnosis.parts import about_sizes
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, changed_settings
@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.diagnosis.worse_outputs import worse_outputs
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
-from greybox_torch.estimate.metrics import digits_between
+from greybox_torch.estimate.metrics import digits_between, told_fit
 
 SCHEMA = "greybox-verdict/2"
 
@@ -40,40 +40,6 @@ OF_ESTIMATION = "On the experiments that it was estimated from"
 """How the second sentence of what is left begins."""
 
 STOPPED = "The search was stopped before it was done (time limit or interruption): this is what it had found by then."
-
-MOST_NAMED = 12
-"""Candidates not tried any more up to which a sentence names them all."""
-
-
-@dataclass(frozen=True)
-class NotTried:
-    """What was left when a diagnosis was stopped: the ``stages`` that were cut short or left out, and the ``candidates`` (port, mechanism)
-    of the present step that were not yet refitted; all that it offers, where its screen did not come to an end.
-    """
-
-    stages: tuple[str, ...] = ()
-    candidates: tuple[tuple[str, str], ...] = ()
-
-    def sentences(self) -> tuple[str, ...]:
-        """For a reader."""
-        told = []
-        if self.stages:
-            told.append(f"Not finished: {'; '.join(stage.partition(':')[0] for stage in self.stages)}.")
-        if len(self.candidates) > MOST_NAMED:
-            told.append(
-                f"Not tried any more: {len(self.candidates)} mechanisms at ports, which verdict.json lists (not_tried)."
-            )
-        elif self.candidates:
-            named = ", ".join(spoken_at(mechanism, port) for port, mechanism in self.candidates)
-            told.append(f"Not tried any more: {named}.")
-        return tuple(told)
-
-    def as_json(self) -> dict[str, Any]:
-        """Its entry `not_tried`."""
-        return {
-            "stages": list(self.stages),
-            "candidates": [{"port": port, "mechanism": mechanism} for port, mechanism in self.candidates],
-        }
 
 
 @dataclass(frozen=True)
@@ -118,6 +84,8 @@ class Verdict:
     """How many times the noise it is where nothing was found, and what is left may be a disturbance that nobody measured."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
+    question_first: bool = False
+    """Whether it would explain far more than the effects do, so that the sentence begins with it."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -153,6 +121,9 @@ class Verdict:
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
+        if self.question is not None and self.question_first:
+            asked = self.question.partition("?")[0]
+            start = f"{asked}? So changed, a short refit explains far more than what was found with the card as it is:"
         so_far = "" if self.complete else "; so far, as the search was stopped"
         return f"{start} {found}{self._gain()}{so_far}."
 
@@ -207,7 +178,9 @@ class Verdict:
         them = "it" if len(self.effects) == 1 else "them"
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
         digits = digits_between(before, after)
-        return f"; with {them} the validation fit goes from {before:.{digits}f} % to {after:.{digits}f} %{but}"
+        return (
+            f"; with {them} the validation fit goes from {told_fit(before, digits)} to {told_fit(after, digits)}{but}"
+        )
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).

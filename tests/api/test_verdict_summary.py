@@ -8,9 +8,10 @@ import pytest
 
 from greybox_torch.api.verdict_summary import REFIT, SIZE, effect_table, moved_table, notes, which_refit
 from greybox_torch.diagnosis.begun import begun
+from greybox_torch.diagnosis.not_tried import MOST_NAMED, NotTried
 from greybox_torch.diagnosis.one_of import DECIDED_BY, Alternative, OneOf
 from greybox_torch.diagnosis.own_parameters import Estimate
-from greybox_torch.diagnosis.verdict import MOST_NAMED, STOPPED, Left, NotTried
+from greybox_torch.diagnosis.verdict import STOPPED, Left
 from greybox_torch.estimate.initial import BEGINNINGS
 from greybox_torch.estimate.notes import told_at_bound, told_law_at_bound
 from greybox_torch.report.sections.effects import Effects

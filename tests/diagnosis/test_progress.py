@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from greybox_torch.deadline import until
+from greybox_torch.diagnosis.not_tried import MOST_NAMED
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.progress import Journal, Progress
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.stopping import best_so_far
-from greybox_torch.diagnosis.verdict import MOST_NAMED
 from greybox_torch.errors import NumericalError
 
 DRAG, BIAS = ("rotor", "quadratic_drag"), ("rotor", "constant_bias")
