@@ -12,6 +12,7 @@ from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.heat_flows import heat_against_the_fall
 from greybox_torch.checking.influence import Influence, influence
+from greybox_torch.checking.missing_factors import missing_factors
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
@@ -95,7 +96,7 @@ def _run(
         return Examination(made, model, in_order([*found, *(code or [*wrong, *uncompiled])]))
     found += uncompiled
     if graph is not None:
-        found += misfits(model, graph, source)
+        found += [*misfits(model, graph, source), *missing_factors(model, graph, source)]
     points = points_of(model)
     try:
         moved = acting = influence(model, points)
