@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from greybox_torch.api.exchanged import exchanged, exchanged_of_other_units
 from greybox_torch.api.rescaled import rescaled
-from greybox_torch.api.short_refits import beginnings
+from greybox_torch.api.short_refits import Asked, beginnings
 from greybox_torch.api.turned_in_one import turned_in_one
 from greybox_torch.api.turned_with_friction import turned_with_friction
 from greybox_torch.data import DataSet
@@ -28,7 +28,7 @@ def asked_where_poor(
     refit: Sequence[Score],
     simulator: Callable[[], Simulator],
     progress: Callable[[str], None],
-) -> str | None:
+) -> Asked | None:
     """The question of :func:`exchanged`, or else of the other ways in their order, where the re-estimated model, with the scores ``refit``,
     is poor on the validation experiments.
 

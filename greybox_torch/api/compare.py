@@ -18,7 +18,7 @@ from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
 from greybox_torch.api.simulate import SimulationResult
-from greybox_torch.api.start_states import Fits, better_before, first_tenth, own_fits
+from greybox_torch.api.start_states import Fits, begun_far, better_before, first_tenth, own_fits
 from greybox_torch.data import DataSet
 from greybox_torch.errors import ArgumentError, Kind
 from greybox_torch.evaluation import evaluated
@@ -48,12 +48,13 @@ class ComparisonResult(Result):
 
     @property
     def warnings(self) -> list[str]:
-        """Of every model whose simulation overflows or diverges where that is, and what avoids it; and models that follow an experiment far
-        better with the start states of their estimate.
+        """Of every model whose simulation overflows or diverges where that is, and what avoids it; models with states that begin far from
+        what measures them; and models that follow an experiment far better with the start states of their estimate.
         """
         overflows = [f"{name}: {run.overflow}" for name, run in self.runs.items() if run.overflow is not None]
         diverging = [f"{name}: {line}" for name, run in self.runs.items() for line in run.diverging]
-        return [*overflows, *diverging, *better_before(self.runs, self.own)]
+        far = [f"{name}: {line}" for name, line in begun_far(self.runs).items()]
+        return [*overflows, *diverging, *far, *better_before(self.runs, self.own)]
 
     def __getitem__(self, model: str) -> SimulationResult:
         if model not in self.runs:

@@ -12,6 +12,7 @@ from greybox_torch.api.asked_of_channels import asked_where_poor, poor
 from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.diagnosis_result import DiagnosisResult
 from greybox_torch.api.plain_arguments import check_device, check_kind, check_seconds, check_seed, check_told
+from greybox_torch.api.short_refits import Asked
 from greybox_torch.codegen.build import check_compiler
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, until
@@ -19,6 +20,7 @@ from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
+from greybox_torch.diagnosis.slip_first import with_question
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
@@ -117,8 +119,8 @@ def _with_question(
 ) -> pipeline.Diagnosis:
     """The findings with the question of a fit, whether channels are exchanged or turned; Ctrl-C, or the deadline, leaves it out.
 
-    Asked where what was found explains little, or is what such a channel would look like. It changes nothing of that: a machine may lack
-    that much. Seen: a heater's input of the other sign, told as an unknown effect at its actuator (0.97, validation 98 %).
+    Asked where what was found explains little, or is what such a channel would look like; what was found is doubtful where the channel
+    explains far more. Seen: a heater's input of the other sign, told as an unknown effect at its actuator (0.97, validation 98 %).
     """
     began, verdict = time.perf_counter(), found.verdict
     scores = verdict.scores
@@ -129,10 +131,10 @@ def _with_question(
     def simulator() -> Simulator:
         return simulator_for(make_problem(data, model, data.estimation()), SimulationOptions(device))
 
-    def asked() -> str | None:
+    def asked() -> Asked | None:
         with until(deadline):
             return asked_where_poor(data, model, scores["refit"], simulator, progress)
 
-    question, _ = or_else(asked, lambda: None)
-    seconds = verdict.seconds + time.perf_counter() - began
-    return replace(found, verdict=replace(verdict, question=question, seconds=seconds))
+    slip, _ = or_else(asked, lambda: None)
+    told = verdict if slip is None else with_question(verdict, slip.question, slip.reaches)
+    return replace(found, verdict=replace(told, seconds=verdict.seconds + time.perf_counter() - began))

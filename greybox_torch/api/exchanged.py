@@ -7,7 +7,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from greybox_torch.api.short_refits import REFITTED, Change, asked_of, beginnings, far_better, fit_after
+from greybox_torch.api.short_refits import REFITTED, Asked, Change, asked_of, beginnings, far_better, fit_after
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import card_at
 from greybox_torch.model import GreyBoxModel
@@ -20,7 +20,7 @@ are not asked for.
 """
 
 
-def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where exchanging two channels of one unit, or reversing the sign of one, makes a short refit far better on
     the validation experiments than these are as they stand; else None.
 
@@ -33,7 +33,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
     return asked_of_best(data, model, simulator, achieved, list(_changes(model)))
 
 
-def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """The question for the columns of two inputs or two outputs of different units, each with the scale that the card gives the channel.
 
     Arguments as for :func:`exchanged`.
@@ -48,7 +48,7 @@ def asked_of_best(
     achieved: float,
     changes: Sequence[Change],
     so: str = "So changed",
-) -> str | None:
+) -> Asked | None:
     """The question of one of the ``changes``, of those that simulate best with the start values; ``so``: what was refitted."""
     short = beginnings(data)
     if short is None or not changes:

@@ -87,7 +87,8 @@ def fit(
     )
     drawn = _profiles(found, simulator, names, precision, progress)
     comparisons = _compared(data, given, found, simulator)
-    question = asked_where_poor(data, given, comparisons["refit"].scores, lambda: simulator, progress)
+    asked = asked_where_poor(data, given, comparisons["refit"].scores, lambda: simulator, progress)
+    question = None if asked is None else asked.question
     seconds = time.perf_counter() - began
     return FitResult(data, found, comparisons, drawn, unidentifiable, precision, seconds, question)
 

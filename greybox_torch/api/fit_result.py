@@ -13,6 +13,7 @@ from rich.text import Text
 
 from greybox_torch.api.estimated import EstimatedParameter, EstimatedStart, estimated_parameters, estimated_starts
 from greybox_torch.api.estimated_model import EstimatedModel
+from greybox_torch.api.far_parameters import far_parameters
 from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lost_outputs
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
@@ -101,6 +102,7 @@ class FitResult(EstimatedModel):
             "profiles": {name: profile_json(one) for name, one in self.profiles.items()},
             "precision": self.precision,
             **({"ran_away": self._away} if self._away is not None else {}),
+            **({"far_parameters": self._far} if self._far is not None else {}),
             **({"question": self.question} if self.question is not None else {}),
             "dataset": self.data.name,
             "model": model_reference(self.estimation.problem.model),
@@ -148,20 +150,30 @@ class FitResult(EstimatedModel):
 
     @property
     def _advice(self) -> list[str]:
-        """What the free runs, and parameters that ran away, say about model and card: up to four sentences."""
+        """What the free runs, and parameters that ran away or ended far off, say about model and card: up to five sentences."""
         problem = self.estimation.problem
         away = self._away
         said = fit_advice(self._scores, begun_with(problem, self.data))
         asked = None if self.question is None else f"{self.question}."
         lost = lost_outputs(self._scores)
         alone = None if said or lost else lost_in_one(self._scores)
-        lines = (None if away is None else f"{away}.", said, lost, alone, asked)
+        lines = (None if away is None else f"{away}.", self._far, said, lost, alone, asked)
         return [line for line in lines if line is not None]
 
     @cached_property
     def _away(self) -> str | None:
         """That parameters or start states ran away, without a full stop."""
-        return ran_away(self.estimation, self.data, mean_fit(of_moving_outputs(held_out_scores(self._scores["refit"]))))
+        return ran_away(self.estimation, self.data, self._fit)
+
+    @property
+    def _far(self) -> str | None:
+        """That parameters ended far from where they began, as a sentence."""
+        return far_parameters(self.estimation, self.data, self._fit)
+
+    @property
+    def _fit(self) -> float:
+        """Mean fit in % of the outputs that move, on the validation experiments if there are any."""
+        return mean_fit(of_moving_outputs(held_out_scores(self._scores["refit"])))
 
     @property
     def _given(self) -> list[str]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from greybox_torch.data import DataSet
@@ -29,7 +31,7 @@ def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
     Args:
         fit: mean fit in % with which the estimate simulates.
     """
-    far = _parameters(found, data, fit) + _starts(found, data)
+    far = told_with_start(found, data, away(found, data, fit)) + _starts(found, data)
     if not far:
         return None
     return (
@@ -39,17 +41,28 @@ def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
     )
 
 
-def _parameters(found: Estimation, data: DataSet, fit: float) -> list[str]:
-    problem = found.problem
-    held = problem.model.held_values()
-    declared = with_card(data, problem.model)
-    begun, units = {p.name: held.get(p.name, p.value) for p in declared}, {p.name: p.unit for p in declared}
+def away(found: Estimation, data: DataSet, fit: float) -> list[str]:
+    """The names of free parameters that ran away. Arguments as for :func:`ran_away`."""
+    problem, begun = found.problem, start_values(found, data)
     loose = {n for n, deviation in _widest(found).items() if deviation >= abs(begun[n])} if fit < TRUSTED else set()
     return [
-        in_unit(f"{name} = {value:.4g}", units[name]) + f" (begun with {begun[name]:.3g})"
+        name
         for name, value in problem.values_by_name.items()
         if name in problem.free_names and abs(value) >= (BADLY if name in loose else FOR_SURE) * abs(begun[name]) > 0.0
     ]
+
+
+def start_values(found: Estimation, data: DataSet) -> dict[str, float]:
+    """What all parameters were begun with, by name."""
+    held = found.problem.model.held_values()
+    return {p.name: held.get(p.name, p.value) for p in with_card(data, found.problem.model)}
+
+
+def told_with_start(found: Estimation, data: DataSet, names: Sequence[str]) -> list[str]:
+    """Parameters with their estimates, and what they were begun with."""
+    begun, values = start_values(found, data), found.problem.values_by_name
+    units = {p.name: p.unit for p in found.problem.model.declared_parameters}
+    return [in_unit(f"{n} = {values[n]:.4g}", units[n]) + f" (begun with {begun[n]:.3g})" for n in names]
 
 
 def _widest(found: Estimation) -> dict[str, float]:

@@ -16,6 +16,7 @@ from greybox_torch.api.short_refits import (
     AS_GOOD,
     AS_IT_IS,
     REFITTED,
+    Asked,
     Change,
     beginnings,
     far_better,
@@ -42,7 +43,7 @@ MOST_CHANNELS = 8
 """Inputs, and outputs, up to which each is tried with every factor: seven simulations or so for one."""
 
 
-def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where other values of one channel, by a factor or a zero that units differ by, make a short refit far better
     on the validation experiments than these are as they stand; else None. Only changes are refitted with which the start values alone
     simulate better.
@@ -63,10 +64,11 @@ def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved:
     # in the order of what the start values say
     told, rest = next(pair for pair in zip(tried, lefts, strict=True) if pair[1] <= AS_GOOD * min(lefts))
     as_it_is = f" instead of {digits(100.0 - left, 3)} %" if np.isfinite(left) else ""
-    return (
+    question = (
         f"{told.question}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
         "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
     )
+    return Asked(question, 100.0 - rest)
 
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:

@@ -63,6 +63,16 @@ class Change:
 AS_IT_IS = Change({}, "")
 
 
+@dataclass(frozen=True)
+class Asked:
+    """A ``question`` to the user, without its full stop, and the mean fit in % that a short refit ``reaches`` on the validation experiments
+    with the channels as it has them.
+    """
+
+    question: str
+    reaches: float
+
+
 def beginnings(data: DataSet) -> DataSet | None:
     """The data set with the beginnings of its experiments, and what the card says of the model; None where one has no sample of a channel
     there.
@@ -127,7 +137,7 @@ def asked_of(
     data: DataSet,
     mend: str,
     so: str = "So changed",
-) -> str | None:
+) -> Asked | None:
     """The question whether the best of the changes that were refitted is so, or one that is as good; None where :func:`far_better` has
     found none. ``mend``: what to do then; ``so``: what was refitted.
     """
@@ -137,10 +147,12 @@ def asked_of(
     asked = [change.question for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * min(lefts)]
     question = ", or ".join(asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
-    return (
-        f"{question[0].upper()}{question[1:]}? {so}, a short refit reaches a mean fit of {100.0 - min(lefts):.3g} % on "
+    reaches = 100.0 - min(lefts)
+    told = (
+        f"{question[0].upper()}{question[1:]}? {so}, a short refit reaches a mean fit of {reaches:.3g} % on "
         f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
     )
+    return Asked(told, reaches)
 
 
 def judging(data: DataSet) -> str:

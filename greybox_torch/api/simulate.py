@@ -19,7 +19,7 @@ from greybox_torch.api.free_runs import figure_files, file_stems, free_runs_json
 from greybox_torch.api.plain_arguments import check_device
 from greybox_torch.api.result import Result
 from greybox_torch.api.scores import print_scores, print_substeps, score_rows, score_table
-from greybox_torch.api.start_states import first_tenth
+from greybox_torch.api.start_states import begun_far, first_tenth
 from greybox_torch.data import DataSet
 from greybox_torch.data.steps import steps_of
 from greybox_torch.errors import NumericalError
@@ -92,9 +92,10 @@ class SimulationResult(Result):
     @cached_property
     def warnings(self) -> list[str]:
         """Experiments whose simulation overflows or diverges, and outputs that move opposite to what was measured, in every experiment: a
-        sign is wrong on the card or in the model.
+        sign is wrong on the card or in the model; and states that begin far from what measures them.
         """
         told = [*([] if self.run.overflow is None else [self.run.overflow]), *self.run.diverging]
+        told += begun_far({self.name: self.run}).values()
         for name in (output.name for output in self.run.problem.model.outputs):
             found = [_correlation(self.data.recordings[e].signals[name], self[run][name]) for e, run in enumerate(self)]
             known = [one for one in found if np.isfinite(one)]

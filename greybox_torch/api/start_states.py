@@ -7,14 +7,22 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from greybox_torch.api.free_runs import Runs
 from greybox_torch.checkpoint import load_checkpoint
 from greybox_torch.data import DataSet
+from greybox_torch.estimate.far_starts import far_starts, told_far
 from greybox_torch.estimate.initial import BEGINNINGS
 from greybox_torch.name_lists import further
 
 LESS = 10.0
 """Points of % by which a fit has to be worse than with the model's own start states to be told."""
+
+FAR_FROM_MEASURED = 0.1
+"""Share of what a sensor shows in an experiment by which a state that it measures has to begin elsewhere to be told: with start values that
+are not the machine's, most begin a little off.
+"""
 
 Fits = Mapping[tuple[str, str], float]
 """In %, by experiment and output."""
@@ -23,6 +31,20 @@ Fits = Mapping[tuple[str, str], float]
 def first_tenth(runs: Runs) -> list[str]:
     """How free runs begin, where that is estimated: a sentence, or none."""
     return [BEGINNINGS] if any(run.problem.initial_free.any() for run in runs.values()) else []
+
+
+def begun_far(runs: Runs) -> dict[str, str]:
+    """By model a sentence, without its full stop, where free runs begin far from the first sample of what is declared to begin as measured.
+
+    The first tenth asks for that start where the model follows nothing from the right one: it is no fault of the column.
+    """
+    told = {}
+    for name, run in runs.items():
+        given = [state for state, entry in run.data.initial.items() if entry.value is not None]
+        begun = run.problem.with_values(run.problem.values, np.array(run.comparison.initial))
+        if far := far_starts(begun, given, share=FAR_FROM_MEASURED):
+            told[name] = told_far(far)
+    return told
 
 
 def own_fits(given: Any, data: DataSet) -> Fits:

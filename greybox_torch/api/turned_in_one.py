@@ -11,6 +11,7 @@ from greybox_torch.api.short_refits import (
     FAR_BETTER,
     FOLLOWS,
     REFITTED,
+    Asked,
     Change,
     asked_of,
     beginnings,
@@ -26,7 +27,7 @@ MOST = 60
 """Channels times experiments up to which it is asked: as many simulations."""
 
 
-def turned_in_one(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+def turned_in_one(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where turning the sign of one channel in one experiment makes a short refit far better on the validation
     experiments than these are as they stand; else None. Only changes are refitted with which the start values alone simulate that
     experiment far better.

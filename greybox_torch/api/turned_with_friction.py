@@ -6,7 +6,7 @@ Without the friction neither sign fits, so that no turned channel makes the fit 
 from __future__ import annotations
 
 from greybox_torch.api.exchanged import asked_of_best, sign_turns
-from greybox_torch.api.short_refits import FOLLOWS, beginnings
+from greybox_torch.api.short_refits import FOLLOWS, Asked, beginnings
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.problem import make_problem
@@ -24,7 +24,7 @@ MOST_BODIES = 4
 """Bodies of a model up to which it is asked: each has a level of friction to be estimated."""
 
 
-def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> str | None:
+def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where turning the sign of one channel, with Coulomb friction at every body, makes a short refit far better on
     the validation experiments than both the estimate and a refit with the friction alone; else None.
 

@@ -6,17 +6,18 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
-from greybox_torch.checking.coupling_signs import pushes_on
 from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
 from greybox_torch.checking.heat_flows import heat_against_the_fall
 from greybox_torch.checking.influence import Influence, influence
+from greybox_torch.checking.missing_factors import missing_factors
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
 from greybox_torch.checking.points import Points, points_of, start_of, wide_points
+from greybox_torch.checking.port_signs import turned_ports
 from greybox_torch.checking.source import Source, source_of
 from greybox_torch.checking.units import misfits, unreadable_units
 from greybox_torch.errors import UserError
@@ -95,7 +96,7 @@ def _run(
         return Examination(made, model, in_order([*found, *(code or [*wrong, *uncompiled])]))
     found += uncompiled
     if graph is not None:
-        found += misfits(model, graph, source)
+        found += [*misfits(model, graph, source), *missing_factors(model, graph, source)]
     points = points_of(model)
     try:
         moved = acting = influence(model, points)
@@ -108,6 +109,8 @@ def _run(
         found.append(never_finite(model, points, starts(model) if starts else [start_of(model, {})], source))
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
-    found += [*heat_against_the_fall(model, points, source), *pushes_on(model, points, source)]
+    found += heat_against_the_fall(model, points, source)
+    if not any(negative_masses(model, source)):  # pushed, these go the other way by themselves
+        found += turned_ports(model, points, source)
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

@@ -19,12 +19,12 @@ Misfit = Callable[[int, str], object]
 InUnits = Callable[[int, Dimension], str]
 """How the dimension of a node is written."""
 
-_OF_NUMBERS = {
+OF_NUMBERS = {
     "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "expm1", "log", "log1p", "erf",
 }  # fmt: skip
-_KEEPING = {"neg", "abs", "floor"}
-_ALIKE = {"add": "adds", "sub": "subtracts", "min": "takes the smaller of", "max": "takes the larger of"}
-_ALIKE |= dict.fromkeys(COMPARISONS, "compares") | {"atan2": "takes the angle of"}
+KEEPING = {"neg", "abs", "floor"}
+ALIKE = {"add": "adds", "sub": "subtracts", "min": "takes the smaller of", "max": "takes the larger of"}
+ALIKE |= dict.fromkeys(COMPARISONS, "compares") | {"atan2": "takes the angle of"}
 
 Known = dict[int, Dimension | None]
 """By node; None where it is unknown."""
@@ -61,20 +61,20 @@ def _combined(
         if inner[0] is None or inner[1] is None:
             return None
         return inner[0].times(inner[1], 1 if operation == "mul" else -1)
-    if operation in _KEEPING:
+    if operation in KEEPING:
         return inner[0]
     if operation == "sqrt":
         return None if inner[0] is None else inner[0].to_the(Fraction(1, 2))
     if operation == "pow":
         return _power(graph, arguments, inner)
-    if operation in _OF_NUMBERS:
+    if operation in OF_NUMBERS:
         if inner[0] is not None and inner[0] != NONE:
             unit = in_units(arguments[0], inner[0])
             misfit(index, f"takes {operation} of `{text(arguments[0])}`, which is in {unit} and not a plain number")
         return NONE
     if operation == "sign":
         return NONE
-    if operation in _ALIKE or operation == "where":
+    if operation in ALIKE or operation == "where":
         pair = arguments[1:] if operation == "where" else arguments
         same = _alike(graph, index, pair, known, text, misfit, in_units)
         return NONE if operation in BOOLEAN or operation == "atan2" else same
@@ -98,7 +98,7 @@ def _alike(
     if one is None or other is None:
         return one if other is None else other
     if one != other:
-        doing = _ALIKE.get(graph.nodes[index].operation, "chooses between")
+        doing = ALIKE.get(graph.nodes[index].operation, "chooses between")
         first, second = (f"`{text(a)}`, in {in_units(a, of)}" for a, of in zip(held, (one, other), strict=True))
         misfit(index, f"{doing} {first}, and {second}")
         return None

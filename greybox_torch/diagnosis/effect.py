@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -126,6 +126,14 @@ class Effect:
 
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
+
+    def no_surer_than(self, highest: float) -> Effect:
+        """The same with that probability at most, as a member of its class too."""
+        probability, whole = min(self.probability, highest), self.one_of
+        if whole is not None:
+            members = (replace(m, probability=min(m.probability, highest)) for m in whole.members)
+            whole = replace(whole, members=tuple(members))
+        return replace(self, probability=probability, one_of=whole)
 
     @property
     def prefix(self) -> str:

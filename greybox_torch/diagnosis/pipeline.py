@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe import report_data
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
-from greybox_torch.diagnosis.describe.left import what_is_left
+from greybox_torch.diagnosis.describe.left import mean_fits, what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
@@ -40,7 +40,6 @@ from greybox_torch.diagnosis.stopwatch import Stopwatch
 from greybox_torch.diagnosis.study import Study, silent
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.errors import NumericalError, UserError
-from greybox_torch.estimate.comparison import mean_fit
 from greybox_torch.estimate.start_states import starts_of
 from greybox_torch.linear_algebra import on_one_thread
 from greybox_torch.mechanisms.stored import attachment_json
@@ -217,7 +216,7 @@ def _as_found(
             study.settings.above_noise,
             shown=found.by_parameters is None,
             over_windows=times_noise(study.problem, state.current, study.settings),
-            fit=mean_fit(judged.judging(judged.with_effects, unstable).scores),
+            fits=mean_fits(judged, unstable),
             further=best_further(study, state),
         ),
         unstable=unstable,

@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.traces import InputTrace, Trace
 from greybox_torch.diagnosis.without_effects import WithoutEffects
 from greybox_torch.diagnosis.worse_outputs import worse_outputs
 from greybox_torch.estimate.comparison import Score, fit_rows, mostly_in
-from greybox_torch.estimate.metrics import digits_between
+from greybox_torch.estimate.metrics import digits_between, told_fit
 
 SCHEMA = "greybox-verdict/2"
 
@@ -84,6 +84,8 @@ class Verdict:
     """How many times the noise it is where nothing was found, and what is left may be a disturbance that nobody measured."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
+    question_first: bool = False
+    """Whether it would explain far more than the effects do, so that the sentence begins with it."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -119,6 +121,9 @@ class Verdict:
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
+        if self.question is not None and self.question_first:
+            asked = self.question.partition("?")[0]
+            start = f"{asked}? So changed, a short refit explains far more than what was found with the card as it is:"
         so_far = "" if self.complete else "; so far, as the search was stopped"
         return f"{start} {found}{self._gain()}{so_far}."
 
@@ -173,7 +178,9 @@ class Verdict:
         them = "it" if len(self.effects) == 1 else "them"
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
         digits = digits_between(before, after)
-        return f"; with {them} the validation fit goes from {before:.{digits}f} % to {after:.{digits}f} %{but}"
+        return (
+            f"; with {them} the validation fit goes from {told_fit(before, digits)} to {told_fit(after, digits)}{but}"
+        )
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).

@@ -24,7 +24,7 @@ RANGE = 0.005
 """Share of what the sensor shows in the experiment below which a difference is not worth a word."""
 
 
-def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
+def far_starts(problem: Problem, given: Collection[str] = (), *, share: float = RANGE) -> list[str]:
     """A sentence without its full stop for every experiment in which estimated start states that an output shows, and that are declared
     ``initial="measured"``, are not where the first sample is, farther than the sensor's noise explains.
 
@@ -32,6 +32,7 @@ def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
 
     Args:
         given: states that the card gives a start value, so that they are not to begin as measured.
+        share: of what the sensor shows in the experiment, up to which a difference is not told.
     """
     records, model = problem.records, problem.model.plain
     shown = sensed_states(model)
@@ -45,7 +46,7 @@ def far_starts(problem: Problem, given: Collection[str] = ()) -> list[str]:
                 continue
             values = records.y[[o.name for o in model.outputs].index(shown[state.name]), records.span(e)]
             sample, noise = float(values[0]), noise_of(values)
-            if np.isfinite(sample) and abs(problem.initial[e, i] - sample) > _at_most(values, noise):
+            if np.isfinite(sample) and abs(problem.initial[e, i] - sample) > _at_most(values, noise, share):
                 far.append(in_unit(f"{state.name} at {problem.initial[e, i]:.4g}", state.unit) + _beside(sample, noise))
         if far:
             told.append(f"{name} is begun with {', '.join(far)}")
@@ -57,8 +58,8 @@ def told_far(far: Sequence[str]) -> str:
     more = f"; and {further(len(far) - _SHOWN, 'experiment')}" if len(far) > _SHOWN else ""
     return (
         f"{'; '.join(far[:_SHOWN])}{more}: farther from the first sample than the sensor's noise explains, though the state is declared to "
-        "begin as measured. Such a start makes up for something that the model lacks; [model.initial] name = { fixed = true } on the card "
-        "holds a state at its first sample"
+        "begin as measured. Such a start makes up for something that the model lacks or has wrong; [model.initial] name = { fixed = true } "
+        "on the card holds a state at its first sample"
     )
 
 
@@ -67,9 +68,9 @@ def _beside(sample: float, noise: float) -> str:
     return f" (first sample {sample:.4g}{spread})"
 
 
-def _at_most(values: np.ndarray, noise: float) -> float:
+def _at_most(values: np.ndarray, noise: float, share: float) -> float:
     """How far a start state may lie from the first sample of measurements (N,) with some noise."""
     known = values[np.isfinite(values)]
     steps = np.abs(np.diff(known))
     step = float(steps[steps > 0.0].min()) if (steps > 0.0).any() else 0.0
-    return max(NOISE_AT_MOST * noise, RESOLUTION * step, RANGE * float(np.ptp(known)))
+    return max(NOISE_AT_MOST * noise, RESOLUTION * step, share * float(np.ptp(known)))

@@ -37,6 +37,15 @@ def final_prediction_error(mse: float, unknowns: int, samples: int) -> float:
     return mse * (1 + share) / (1 - share) if share < 1 else float("inf")
 
 
+RUNS_AWAY = -1000.0
+"""Fit in % below which a free run has run away: how far it came by the end of a recording says nothing."""
+
+
 def digits_between(before: float, after: float, most: int = 4) -> int:
     """Decimals, one at the least, that show how two fits in % differ where both are near 100; ``most`` where even these do not."""
     return next((n for n in range(1, most) if f"{before:.{n}f}" != f"{after:.{n}f}"), most if before != after else 1)
+
+
+def told_fit(value: float, decimals: int) -> str:
+    """A fit in %, in words where the simulation ran away."""
+    return f"below {RUNS_AWAY:.0f} %" if value < RUNS_AWAY else f"{value:.{decimals}f} %"

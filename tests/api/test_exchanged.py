@@ -206,9 +206,10 @@ def test_a_change_is_compared_with_the_estimate_itself(
         monkeypatch.setattr(module, "fit_after", lambda *given, refitted=True: 90.0 if given[3].read else -np.inf)
     roles = ("estimation", "validation")
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(roles)])
-    question = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]
-    assert (question is not None) is is_asked
-    if question is not None:
+    asked = exchanged.exchanged(data, Plate(), None, achieved)  # pyright: ignore[reportArgumentType]
+    assert (asked is not None) is is_asked
+    if asked is not None:
+        question = asked.question
         assert ("as it is" in question) is bool(np.isfinite(achieved)) and "inf" not in question
         assert f"({achieved:.3g} % as it is)" in question or not np.isfinite(achieved)
 
@@ -227,8 +228,8 @@ def test_many_channels_of_one_unit_are_not_exchanged_one_by_one() -> None:
     assert len(asked(many)) == 22 and all("sign" in one for one in asked(many))
 
 
-@pytest.mark.parametrize("found", [None, "Are the columns exchanged"])
-def test_the_log_says_what_came_of_it(found: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("found", [None, short_refits.Asked("Are the columns exchanged", 95.0)])
+def test_the_log_says_what_came_of_it(found: short_refits.Asked | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []
     monkeypatch.setattr(asked_of_channels, "exchanged", lambda *given: found)

@@ -67,12 +67,13 @@ def test_only_what_the_start_values_bear_out_is_refitted(monkeypatch: pytest.Mon
 
     for module in (rescaled, short_refits):
         monkeypatch.setattr(module, "fit_after", fit_after)
-    question = rescaled.rescaled(recordings(), Plate(), None, 10.0)  # pyright: ignore[reportArgumentType]
+    asked = rescaled.rescaled(recordings(), Plate(), None, 10.0)  # pyright: ignore[reportArgumentType]
     assert (
         refits == [1.0, 10.0, 10.0, 10.0]
-        and question is not None
-        and "90 %" in question
-        and "instead of 20 %" in question
+        and asked is not None
+        and "90 %" in asked.question
+        and "instead of 20 %" in asked.question
+        and asked.reaches == 90.0
     )
     refits.clear()
     for module in (rescaled, short_refits):

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+import pytest
+
 import greybox_torch as gt
 from greybox_torch.api.start_states import own_fits
 from greybox_torch.checkpoint import load_checkpoint, save_checkpoint
@@ -44,3 +47,35 @@ def test_no_fit_where_the_estimate_itself_has_none(folder: Path, data: gt.DataSe
     held = load_checkpoint(folder / "fit")
     save_checkpoint(folder / "none", replace(held, figures=figures))
     assert own_fits(folder / "none", data) == {}
+
+
+class Measured(Motor):
+    """With a speed that begins as measured."""
+
+    states = [gt.State("speed", "rad/s", initial="measured")]
+
+
+def stuck(seconds: float, *, given: dict[str, dict[str, float]] | None = None) -> gt.DataSet:
+    """A motor that dry friction holds for a while, and that then runs."""
+    time = 0.01 * np.arange(1000)
+    speed = np.clip(2.0 * (time - seconds), 0.0, None) + 0.01 * np.random.default_rng(0).standard_normal(1000)
+    run = gt.Recording.from_arrays("run", {"voltage": np.full(1000, 5.0), "speed": speed}, sample_time=0.01)
+    return gt.DataSet([run], initial=given or {}, held_out_by_default=False)
+
+
+@pytest.mark.parametrize(("seconds", "given", "far"), [(3.0, None, True), (3.0, {"speed": {"value": -4.0}}, False)])
+def test_a_free_run_that_begins_far_from_the_first_sample_is_told(
+    seconds: float, given: dict[str, dict[str, float]] | None, far: bool
+) -> None:
+    """Seen: a free run from -60 rad/s, where 0 was measured, as the model lacks friction; its user looked for a wrong column."""
+    data = stuck(seconds, given=given)
+    run = gt.simulate(Measured(), data)
+    found = [line for line in run.warnings if "run is begun with speed at -" in line]
+    assert bool(found) is far, run.initial
+    assert {f"start: {line}" for line in found} <= set(gt.compare(data, {"start": Measured()}).warnings)
+    if far:
+        assert "though the state is declared to begin as measured" in found[0]
+
+
+def test_a_start_a_little_off_is_not_told(data: gt.DataSet) -> None:
+    assert not any("is begun with" in line for line in gt.simulate(Measured(), data).warnings)

@@ -3,7 +3,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from greybox_torch.estimate.metrics import digits_between, final_prediction_error, fit_percent, root_mean_square
+from greybox_torch.estimate.metrics import (
+    digits_between,
+    final_prediction_error,
+    fit_percent,
+    root_mean_square,
+    told_fit,
+)
 
 NAN, INF = float("nan"), float("inf")
 
@@ -49,3 +55,12 @@ def test_two_fits_are_told_with_the_decimals_that_show_how_they_differ(
 ) -> None:
     """Seen: "the validation fit goes from 100.0 % to 100.0 %"."""
     assert digits_between(before, after) == digits
+
+
+def test_how_far_a_run_away_model_came_is_no_number() -> None:
+    assert [told_fit(value, 1) for value in (-798262.4, -np.inf, -999.9, 71.64)] == [
+        "below -1000 %",
+        "below -1000 %",
+        "-999.9 %",
+        "71.6 %",
+    ]

@@ -181,6 +181,16 @@ def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
         assert "rotor.torque_ripple" in made._repr_html_() and "<pre>" in made._repr_html_()
 
 
+@pytest.mark.parametrize("to", ["mjcf", "urdf"])
+def test_the_models_own_values_are_told_as_those_beside_the_effects(
+    to: Literal["mjcf", "urdf"], machines: Path
+) -> None:
+    """Seen: J as estimated with the effects, told as what "the model without effects" holds, which another column of the results is."""
+    text = str(gt.export(rotor(machines, {("rotor", "coulomb_friction"): {"F_c": 0.1}}), to=to))
+    assert "Beside these effects, the model's own parameters are J = 0.02 kg m^2" in text
+    assert "without effects" not in text
+
+
 def test_play_whose_contact_grows_stiffer_is_told_not_to(machines: Path) -> None:
     made: Any = gt.export(slide(machines, {("spring", "backlash"): {"half_gap": 0.1, "k_2": 40.0}}), to="mjcf")
     assert ["k_2 = 40" in row["why"] for row in made.rows] == [False, True]

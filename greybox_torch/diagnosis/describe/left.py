@@ -11,6 +11,8 @@ from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
 from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
+from greybox_torch.estimate.comparison import mean_fit
+from greybox_torch.estimate.metrics import RUNS_AWAY
 
 TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
 """Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
@@ -24,7 +26,7 @@ def what_is_left(
     *,
     shown: bool = True,
     over_windows: float = np.inf,
-    fit: float = 0.0,
+    fits: Sequence[float] = (0.0, 0.0),
     further: str = "",
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
@@ -33,8 +35,8 @@ def what_is_left(
         noise: the error, in units of the noise, up to which its kind is not told: it would read as if something were missing after all.
         shown: whether the recordings show the effects; where parameters made up for them, the re-estimated model leaves as much.
         over_windows: the error over windows of the estimation experiments, whose start states are estimated, in units of the noise.
-        fit: mean fit of the recommended model on the validation experiments that count, in %. Below zero the share that is left says
-            nothing: it may be little of what a model leaves that is lost.
+        fits: mean fits of the re-estimated and the recommended model on the validation experiments that count, in %. Where the second is
+            below zero, or the first runs away, the share that is left says nothing: it may be little of what a model leaves that is lost.
         further: a clause on what would take up much of it, where something would.
     """
     share, times, worst = judged.left(effects)
@@ -75,10 +77,22 @@ def what_is_left(
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains in free runs" if shown else "As much remains as without it"
         whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
+        without, fit = fits
         if shown and fit < 0.0:
             how_well = f"have a mean fit of {fit:.1f} %, worse than a constant" if np.isfinite(fit) else "overflow"
             whole = f"With what was found, free runs of the validation experiments {how_well}"
+        elif shown and without < RUNS_AWAY:
+            whole = (
+                f"With what was found, free runs of the validation experiments have a mean fit of {fit:.1f} %; those of the model without "
+                "it run away, so that what remains is no share of their error"
+            )
     return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
+
+
+def mean_fits(judged: Judgement, but: frozenset[str]) -> tuple[float, float]:
+    """Of the re-estimated model and of the one with effects on the experiments that judge, ``but`` for some, in %."""
+    before, after = (mean_fit(judged.judging(run, but).scores) for run in (judged.refit, judged.with_effects))
+    return before, after
 
 
 def _parts(judged: Judgement, effects: bool, experiment: str) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -23,16 +22,7 @@ from greybox_torch.diagnosis.study import Study
 def of_a_stopped_search(effects: Sequence[Effect], settings: DiagnosisSettings) -> tuple[Effect, ...]:
     """The effects with what was not yet tried allowed for."""
     curve, name = settings.highest_probability_of_stopped_curve, settings.highest_probability_of_stopped_name
-    return tuple(_at_most(curve if e.mechanism == "unknown" else name, e) for e in effects)
-
-
-def _at_most(highest: float, effect: Effect) -> Effect:
-    """An effect that is no surer than that, as a member of its class neither."""
-    probability, whole = min(effect.probability, highest), effect.one_of
-    if whole is not None:
-        members = (replace(m, probability=min(m.probability, highest)) for m in whole.members)
-        whole = replace(whole, members=tuple(members))
-    return replace(effect, probability=probability, one_of=whole)
+    return tuple(e.no_surer_than(curve if e.mechanism == "unknown" else name) for e in effects)
 
 
 def shared(

@@ -96,6 +96,18 @@ class ProbabilitySettings:
         unit="probability",
         chosen_by="six proofs and unseen machines: of 18 names that stopped searches were surer of, 15 were right",
     )
+    highest_probability_beside_a_question: float = share(
+        0.5,
+        "The most that is claimed for what was found where a slip on the card, which the result asks about, explains far more.",
+        unit="probability",
+        chosen_by="even odds",
+    )
+    far_more_by_a_question: float = share(
+        0.5,
+        "Part of what the findings leave to a mean validation fit of 100 % up to which what such a slip leaves is far less.",
+        unit="share of what is left to a fit of 100 %",
+        chosen_by="as a slip has to be beside the model as it stands to be asked about",
+    )
     least_alternative: float = share(
         0.005, "Probability from which a rival is listed.", unit="probability", chosen_by="legibility"
     )

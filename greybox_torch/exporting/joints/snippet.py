@@ -35,10 +35,13 @@ def shown(value: Attribute) -> str:
 
 
 def own_values(model: GreyBoxModel) -> str:
-    """A sentence with the values of the model without effects: masses, inertias and springs are the simulation's."""
+    """A sentence with the model's own parameters: masses, inertias and springs are the simulation's.
+
+    They were found with the effects, so that it does not call them those of the model without effects, which `compare` scores.
+    """
     values, units = model.values(), {p.name: p.unit for p in model.plain.declared_parameters}
     told = ", ".join(in_unit(f"{name} = {values[name]:.6g}", unit) for name, unit in units.items())
-    return f"The model without effects holds {told}: compare them with what this simulation has."
+    return f"Beside these effects, the model's own parameters are {told}: compare them with what this simulation has."
 
 
 def _plain(text: str) -> str:

@@ -132,6 +132,15 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
 )
 def test_little_of_a_mismatch_of_runs_that_are_lost_is_not_told_as_little(stub, fit: float, told: str) -> None:
     """Seen: "1.7 % of the mismatch remains" beside a validation fit of -73 %, where the model as it stands had -1619 %."""
-    left = what_is_left(stub(left=lambda effects: (0.017, 150.0, "Run 2")), [], True, 1.3, fit=fit)
+    left = what_is_left(stub(left=lambda effects: (0.017, 150.0, "Run 2")), [], True, 1.3, fits=(-80.0, fit))
     assert told in left.sentence and left.share == 0.017
     assert ("of the mismatch remains" in left.sentence) is (fit >= 0.0)
+
+
+def test_no_share_is_told_of_the_error_of_a_model_that_runs_away(stub) -> None:
+    """Seen: "less than 0.01 % of the mismatch remains", of a validation fit of -798262 %, beside 130 times the noise."""
+    judged = stub(left=lambda effects: (6e-10, 126.4, "C"))
+    told = what_is_left(judged, [], True, 1.3, fits=(-798262.4, 71.6)).sentence
+    assert "have a mean fit of 71.6 %; those of the model without it run away" in told and "130 times the noise" in told
+    assert "0.01" not in told
+    assert "Less than 0.01 %" in what_is_left(judged, [], True, 1.3, fits=(-40.0, 99.9)).sentence
