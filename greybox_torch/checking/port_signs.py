@@ -32,6 +32,8 @@ def turned_ports(model: GreyBoxModel, points: Points, source: Source) -> Iterato
     found = model.derivative(x, u, p, f)
     by_port = [slopes(torch.as_tensor(found[state.name]), (points.f,))[0] for state in model.states]
     for k, port in enumerate(model.ports):
+        if not isinstance(port, Body | Coupling | Balance):
+            continue
         pushed = torch.stack([slope[k] for slope in by_port])
         right = -1.0 if isinstance(port, Coupling) else 1.0
         for name in _MOVED.get(type(port), ()):

@@ -26,13 +26,11 @@ class SearchBudget:
     most_revisions: int = count(
         2, "How often the choice of earlier effects is taken up again.", chosen_by=TIME, least=0
     )
-
     names_before_memory: int = count(
         2,
         "Effects found that leave more than noise, before a residual with memory is tried in their place.",
         chosen_by=TIME,
     )
-
     most_samples: int = count(
         100_000,
         "Samples of all recordings of one role that are searched; of longer ones the stretch that moves most is.",

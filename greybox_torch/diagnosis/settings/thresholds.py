@@ -5,13 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from greybox_torch.diagnosis.settings.card import CardSettings
-from greybox_torch.diagnosis.settings.choosing import (
-    ComparisonSettings,
-    NoiseSettings,
-    ScreenSettings,
-    SelectionSettings,
-)
+from greybox_torch.diagnosis.settings.choosing import NoiseSettings, ScreenSettings, SelectionSettings
 from greybox_torch.diagnosis.settings.claiming import ConfirmationSettings, ResidualSettings
+from greybox_torch.diagnosis.settings.comparing import ComparisonSettings
 from greybox_torch.diagnosis.settings.curves import CurveSettings
 from greybox_torch.diagnosis.settings.fields import check
 from greybox_torch.diagnosis.settings.held_out_decides import HeldOutDecidesSettings
