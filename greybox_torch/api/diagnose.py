@@ -119,13 +119,15 @@ def _with_question(
 ) -> pipeline.Diagnosis:
     """The findings with the question of a fit, whether channels are exchanged or turned; Ctrl-C, or the deadline, leaves it out.
 
-    Asked where what was found explains little, or is what such a channel would look like; what was found is doubtful where the channel
+    Asked where what was found explains little, or is what such a channel would look like, or where parameters of the model end at a bound
+    beside it; what was found is doubtful where the channel
     explains far more. Seen: a heater's input of the other sign, told as an unknown effect at its actuator (0.97, validation 98 %).
     """
     began, verdict = time.perf_counter(), found.verdict
     scores = verdict.scores
     as_a_slip = any(e.mechanism in LIKE_A_SLIP and e.port.startswith(("actuator", "sensor")) for e in verdict.effects)
-    if not poor(scores["augmented" if verdict.effects and not as_a_slip else "refit"]):
+    good_so = verdict.effects and not as_a_slip and not verdict.at_bounds
+    if not poor(scores["augmented" if good_so else "refit"]):
         return found
 
     def simulator() -> Simulator:

@@ -63,12 +63,30 @@ def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved:
     left, lefts = found
     # in the order of what the start values say
     told, rest = next(pair for pair in zip(tried, lefts, strict=True) if pair[1] <= AS_GOOD * min(lefts))
+    return asked_of_scale(told, left, rest, data)
+
+
+def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also: str = "") -> Asked:
+    """The question whether a channel is read so.
+
+    Args:
+        left: what is missing to a mean fit of 100 % as it is.
+        rest: the same after the change.
+        also: what was refitted beside it, a clause.
+    """
     as_it_is = f" instead of {digits(100.0 - left, 3)} %" if np.isfinite(left) else ""
     question = (
-        f"{told.question}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
+        f"{change.question}{also}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
         "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
     )
     return Asked(question, 100.0 - rest)
+
+
+def of_units(model: GreyBoxModel) -> Iterator[Change]:
+    """Of the changes those by factors that two units of one quantity differ by, no decades."""
+    known = (PER_MINUTE, DEGREES, TURNS_PER_MINUTE)
+    factors = {*known, *(1.0 / factor for factor in known)}
+    yield from (change for change in _changes(model) if change.factor in factors)
 
 
 def _changes(model: GreyBoxModel) -> Iterator[Change]:

@@ -123,7 +123,7 @@ class Verdict:
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         if self.question is not None and self.question_first:
             asked = self.question.partition("?")[0]
-            start = f"{asked}? So changed, a short refit explains far more than what was found with the card as it is:"
+            start = f"{asked}? So changed, a short refit leaves far less than what was found with the card as it is:"
         so_far = "" if self.complete else "; so far, as the search was stopped"
         return f"{start} {found}{self._gain()}{so_far}."
 

@@ -233,7 +233,13 @@ def test_the_log_says_what_came_of_it(found: short_refits.Asked | None, monkeypa
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []
     monkeypatch.setattr(asked_of_channels, "exchanged", lambda *given: found)
-    for other in ("exchanged_of_other_units", "rescaled", "turned_in_one", "turned_with_friction"):
+    for other in (
+        "exchanged_of_other_units",
+        "rescaled",
+        "turned_in_one",
+        "turned_with_friction",
+        "rescaled_with_friction",
+    ):
         monkeypatch.setattr(asked_of_channels, other, lambda *given: None)
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])
     poor = [Score("1", "validation", "T1", 20.0, 1.0)]

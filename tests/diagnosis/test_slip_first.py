@@ -25,7 +25,7 @@ def test_the_question_is_the_headline_and_the_effect_is_doubtful() -> None:
     """Seen: an unknown effect at the actuator (0.97) "from -798262.4 % to 71.6 %"; lines below, the sign that reaches 99.2 %."""
     told = with_question(verdict(71.6, CURVE), ASKED, 99.2)
     assert told.sentence == (
-        "Is the sign of current turned? So changed, a short refit explains far more than what was found with the card as it is: an unknown "
+        "Is the sign of current turned? So changed, a short refit leaves far less than what was found with the card as it is: an unknown "
         "effect at actuator (probability 0.50); with it the validation fit goes from below -1000 % to 71.6 %."
     )
     assert told.asked == (f"{ASKED}.",) and told.confidence == 0.5

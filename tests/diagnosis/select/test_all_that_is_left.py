@@ -30,7 +30,7 @@ def claimed_of(probability: float, *left: Any, **how: Any) -> float:
 def left_much(stub) -> Any:
     """Hypotheses that leave a mean squared error over noise of a hundredth."""
     y = 0.1 * np.random.default_rng(5).normal(size=(1, SAMPLES))
-    records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES))
+    records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES), time=lambda e: np.arange(SAMPLES))
     problem = stub(records=records, weights=np.ones(1), most_noise=None)
     return lambda error: stub(fits=(stub(mean_square=error),), problem=problem)
 

@@ -1,4 +1,4 @@
-"""A torque of the other sign on a drive with dry friction that the model lacks: neither slip alone explains the recordings."""
+"""A channel of the other sign or unit on a drive with dry friction that the model lacks: neither slip alone explains the recordings."""
 
 from __future__ import annotations
 
@@ -54,3 +54,32 @@ def test_the_sign_is_asked_for_with_the_friction_that_lacks(sign: float, level: 
             "Is the sign of torque turned, or is the sign of speed turned? So changed, and with Coulomb"
         )
         assert "Coulomb friction at rotor, a short refit reaches a mean fit of 9" in question
+
+
+class Axis(Drive):
+    """The same with the way that it goes."""
+
+    states = (*Drive.states, gt.State("place", "m", initial="measured"))
+    outputs = (*Drive.outputs, gt.Output("place", "m"))
+
+    def derivative(self, x, u, p, port):
+        return {**super().derivative(x, u, p, port), "place": 0.03 * x.speed}
+
+    def output(self, x, u, p):
+        return {"speed": x.speed, "place": x.place}
+
+
+@pytest.mark.parametrize(("factor", "asked"), [(30.0 / np.pi, "9.55 times smaller"), (1.0, "")])
+def test_a_unit_is_asked_for_with_the_friction_that_lacks(factor: float, asked: str) -> None:
+    """Seen: a motor's rpm read as rad/s; a mass at its bound and a friction of the other body made up for it, and nothing was asked."""
+    runs = []
+    for k, role in enumerate(("estimation", "validation"), start=1):
+        run = recorded(role, k, 1.0, 5.0)
+        way = 0.03 * STEP * np.cumsum(run.signals["speed"])
+        signals = {"torque": run.signals["torque"], "speed": factor * run.signals["speed"], "place": way - way[0]}
+        runs.append(gt.Recording.from_arrays(role, signals, sample_time=STEP, role=role))
+    question = gt.fit(Axis(), gt.DataSet(runs)).question
+    assert (question is not None) is bool(asked), question
+    if question is not None:
+        assert question.startswith("Is the scale of speed right? With values ") and asked in question
+        assert ", and with Coulomb friction at rotor, a short refit reaches a mean fit of 9" in question

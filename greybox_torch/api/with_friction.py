@@ -1,0 +1,77 @@
+"""Whether a channel has the other sign, or another unit, on a machine with dry friction that the model lacks: asked where an estimate
+follows nothing.
+
+Without the friction neither sign nor unit fits, so that no change makes the fit far better. Seen: a conveyor's torque of the other sign; an
+axis' motor speed in rpm, read as rad/s.
+"""
+
+from __future__ import annotations
+
+from greybox_torch.api.exchanged import asked_of_best, sign_turns
+from greybox_torch.api.rescaled import asked_of_scale, of_units
+from greybox_torch.api.short_refits import FOLLOWS, Asked, beginnings, far_better
+from greybox_torch.data import DataSet
+from greybox_torch.errors import NumericalError, UserError
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import simulator_for
+from greybox_torch.estimate.surroundings import survey
+from greybox_torch.mechanisms.attachment import attach
+from greybox_torch.mechanisms.augmented_model import AugmentedModel
+from greybox_torch.mechanisms.friction import CoulombFriction
+from greybox_torch.model import GreyBoxModel
+from greybox_torch.model.ports import Body
+from greybox_torch.name_lists import listed
+from greybox_torch.simulation.simulator import Simulator
+
+MOST_BODIES = 4
+"""Bodies of a model up to which it is asked: each has a level of friction to be estimated."""
+
+MOST_UNITS = 12
+"""Changes of units up to which it is asked: each is refitted, as start values without the friction do not say which is nearer."""
+
+
+def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
+    """A question to the user, where turning the sign of one channel, with Coulomb friction at every body, makes a short refit far better on
+    the validation experiments than both the estimate and a refit with the friction alone; else None.
+
+    Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
+    """
+    made = _rubbing(data, model, simulator, achieved)
+    if made is None:
+        return None
+    return asked_of_best(data, *made, achieved, list(sign_turns(model)), f"So changed, and {_with(model)}")
+
+
+def rescaled_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
+    """The same question for values of one channel by a factor that units differ by. Of decades no refit is made: they are many."""
+    short, changes = beginnings(data), list(of_units(model))
+    made = _rubbing(data, model, simulator, achieved) if 0 < len(changes) <= MOST_UNITS else None
+    found = far_better(short, *made, changes, achieved) if short is not None and made is not None else None
+    if found is None:
+        return None
+    left, lefts = found
+    best = lefts.index(min(lefts))
+    return asked_of_scale(changes[best], left, lefts[best], data, f", and {_with(model)}")
+
+
+def _rubbing(
+    data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float
+) -> tuple[AugmentedModel, Simulator] | None:
+    """The model with Coulomb friction at every body, and a simulator of it; None where it is not asked."""
+    bodies, short = _bodies(model), beginnings(data)
+    if short is None or achieved >= FOLLOWS or not 0 < len(bodies) <= MOST_BODIES:
+        return None
+    try:
+        around = survey(model, make_problem(short, model, short.estimation()), simulator)
+        rubbing = AugmentedModel(model, [attach(model, name, CoulombFriction()) for name in bodies], around)
+        return rubbing, simulator_for(make_problem(short, rubbing, short.estimation()), simulator.options)
+    except (NumericalError, UserError):  # a simulation that overflows says nothing of how fast the bodies are
+        return None
+
+
+def _bodies(model: GreyBoxModel) -> list[str]:
+    return [port.name for port in model.all_ports if isinstance(port, Body)]
+
+
+def _with(model: GreyBoxModel) -> str:
+    return f"with Coulomb friction at {listed(_bodies(model))}"
