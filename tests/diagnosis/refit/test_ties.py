@@ -33,7 +33,9 @@ def ranked(stub) -> Callable[..., RankedCandidate]:
     def make(mechanism, error: float, size: int = 1) -> RankedCandidate:
         attachment = Attachment("rotor", mechanism)
         y = np.random.default_rng(5).normal(size=(1, SAMPLES))
-        records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES), time=lambda e: np.arange(SAMPLES))
+        records = stub(
+            y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES), time=lambda e: np.arange(SAMPLES)
+        )
         free = tuple(f"{attachment.prefix}.size_{k}" for k in range(size))
         fit = stub(energies=np.full(64, error), mean_square=error)
         problem = stub(free_names=free, records=records, weights=np.ones(1), most_noise=None)

@@ -41,7 +41,9 @@ def fitted(stub):
     def make(*energies, free=(), noise=0.0):
         fits = tuple(stub(energies=np.asarray(e, dtype=float), mean_square=float(np.mean(e))) for e in energies)
         y = noise * np.random.default_rng(5).normal(size=(1, SAMPLES))
-        records = stub(y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES), time=lambda e: np.arange(SAMPLES))
+        records = stub(
+            y=y, u=y, first=np.array([0]), span=lambda e: slice(0, SAMPLES), time=lambda e: np.arange(SAMPLES)
+        )
         problem = stub(free_names=free, records=records, weights=np.ones(1), most_noise=None)
         return stub(fits=fits, problem=problem, score=float(np.log(np.mean(energies[0]))))
 
