@@ -34,7 +34,7 @@ def in_rows(ratio: float, noise: float, seed: int) -> tuple[np.ndarray, np.ndarr
 @settings(max_examples=40, deadline=None)
 @given(
     st.floats(1.5, 6.0),
-    st.floats(1e-5, 1e-2),
+    st.floats(1e-4, 1e-2),
     st.sampled_from([3, 4, 5]),
     st.floats(0.0, 2e9),
     st.integers(0, 10),
