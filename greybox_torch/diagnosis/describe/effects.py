@@ -32,7 +32,7 @@ from greybox_torch.diagnosis.effect import Effect, Profile
 from greybox_torch.diagnosis.hypothesis.final import Final
 from greybox_torch.diagnosis.hypothesis.signals_along import local_signals
 from greybox_torch.diagnosis.one_of import Alternative
-from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest, lowest_limit
+from greybox_torch.diagnosis.select.all_that_is_left import LeftInFreeRuns, lowest, lowest_limit, sizes_at
 from greybox_torch.diagnosis.select.posterior import by_comparison, shared
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
@@ -84,16 +84,17 @@ def describe(
             final,
             left,
             e,
-            _Account(removed * part, sizes.get(e.prefix, np.nan), gains.get(e.prefix), _at_port_of(e, state, sizes)),
+            _Account(
+                removed * part,
+                sizes.get(e.prefix, np.nan),
+                gains.get(e.prefix),
+                sizes_at(e.port, state, sizes, study.settings),
+            ),
             deadline,
         )
         for e, part in zip(state.effects, _parts(state), strict=True)
     )
     return with_likes(state.current, told, final.problem)
-
-
-def _at_port_of(effect: Attachment, state: SearchState, sizes: Mapping[str, float]) -> tuple[float, ...]:
-    return tuple(sizes.get(e.prefix, np.nan) for e in state.effects if e.port == effect.port)
 
 
 def _parts(state: SearchState) -> list[float]:

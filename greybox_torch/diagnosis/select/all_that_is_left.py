@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from greybox_torch.diagnosis.hypothesis.above_noise import far_above_noise, times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
+from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 
@@ -137,6 +138,14 @@ def limited_by_a_larger_rest(size: float, left: LeftInFreeRuns, settings: Diagno
     )
 
 
+def sizes_at(
+    port: str, state: SearchState, sizes: Mapping[str, float], settings: DiagnosisSettings
+) -> tuple[float, ...]:
+    """The ``sizes`` (by effect, shares of the mismatch) of the effects at a port, without those that are too small to be findings."""
+    there = (sizes.get(e.prefix, float("nan")) for e in state.effects if e.port == port)
+    return tuple(size for size in there if not size < settings.least_size)
+
+
 def limited_by_others_at_its_port(
     sizes: Sequence[float], left: LeftInFreeRuns, settings: DiagnosisSettings
 ) -> Limit | None:
@@ -146,12 +155,12 @@ def limited_by_others_at_its_port(
     the current (0.97 each): 14, 23 and 6 % of the mismatch, of which 13 % was left.
 
     Args:
-        sizes: shares of the mismatch that the findings at the port account for, NaN where nobody knows.
+        sizes: shares of the mismatch that the findings at the port account for; nothing is claimed of one that nobody knows (NaN).
     """
     enough = left.of_mismatch is not None and left.of_mismatch > settings.left_beside_a_curve
     if len(sizes) < 2 or not enough or left.times_noise <= settings.above_noise:
         return None
-    if not max(sizes) < settings.most_of_the_mismatch:
+    if not all(size < settings.most_of_the_mismatch for size in sizes):
         return None
     assert left.of_mismatch is not None
     return Limit(

@@ -46,15 +46,18 @@ def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
         return state
     farthest = min(moved, key=lambda r: r.fitted.score)
     moved += _contained(study, state, farthest, asked)
-    if farthest.fitted.score < near and (further := _converged(study, taken.fitted)) is not taken.fitted:
-        taken = judged(taken.candidate, done.parent, further, study.settings)
+    own = taken
+    if farthest.fitted.score < near and (further := _converged(study, state.current)) is not state.current:
+        own = judged(taken.candidate, done.parent, further, study.settings)
     again = {r.candidate.attachment.named for r in moved}
-    others = [r for r in done.ranked if r.fitted is not state.current and r.candidate.attachment.named not in again]
-    step = replace(done, ranked=tuple(in_order([*others, taken, *moved], study.settings)))
+    others = [
+        r for r in done.ranked if r.candidate is not taken.candidate and r.candidate.attachment.named not in again
+    ]
+    step = replace(done, ranked=tuple(in_order([*others, own, *moved], study.settings)))
     state = replace(state, steps=(*state.steps[:-1], step))
-    apart = [r for r in in_order([*moved, taken], study.settings) if r is taken or sound(study, r)]
-    best = chosen(apart, state.plain, study.settings) or taken
-    return state if best is done.taken else widened(state, step, best, best.fitted)
+    apart = [r for r in in_order([*moved, own], study.settings) if r is own or sound(study, r)]
+    best = chosen(apart, state.plain, study.settings) or own
+    return state if best is taken else widened(state, step, best, best.fitted)
 
 
 def _farther(moved: RankedCandidate, own: RankedCandidate) -> bool:
@@ -80,7 +83,7 @@ def _moved(study: Study, state: SearchState, taken: RankedCandidate, law: Attach
     fitted = fit(study, (*parent.effects, law), [start], state.current.fits[0])
     if fitted is None:
         return None
-    if abs(fitted.score - state.current.score) < study.settings.curve_margin:
+    if abs(fitted.score - state.current.score) < study.settings.polished_elsewhere:
         fitted = _converged(study, fitted)
     return judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
 

@@ -28,10 +28,13 @@ class ComparisonSettings:
         0.003, "Improvement that a further parameter has to bring where more than noise is left.", unit=LOG_ERROR
     )
     score_tie: float = number(0.03, "Difference up to which named hypotheses tie.", unit=LOG_ERROR)
-    hardly_better: float = number(
-        0.001,
-        "By how much a further refit has to better a law that two bodies may have for another one.",
+    polished_elsewhere: float = number(
+        0.1,
+        "How near a law at the other end of a spring has to come, in its first refit, to be refitted further.",
         unit=LOG_ERROR,
+    )
+    hardly_better: float = number(
+        0.001, "Improvement below which refits of a law that may act at either end of a spring end.", unit=LOG_ERROR
     )
     trial_allowance: float = number(
         0.05, "How much worse than without it a candidate may be after its trial.", unit=LOG_ERROR

@@ -7,7 +7,9 @@ import pytest
 
 from greybox_torch.diagnosis.hypothesis import in_a_few_samples as module
 from greybox_torch.diagnosis.hypothesis.in_a_few_samples import acts_in_a_few_samples
+from greybox_torch.diagnosis.refit import ranked
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.mechanisms.actuator import TorqueSaturation
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.balance import LinearLeak, ThresholdFlow
 from greybox_torch.mechanisms.end_stop import EndStop
@@ -41,6 +43,29 @@ def test_stops_at_both_ends_are_counted_together(stub, monkeypatch, low, few) ->
     """Below 0 lies a single sample, below 0.5 a tenth of them."""
     stops = Attachment("slide", EndStop(both=True))
     assert asked(stub, monkeypatch, stops, "position", LEVELS, k=1.0, c=0.0, low=low, high=6.0) is few
+
+
+@pytest.mark.parametrize(("where", "side", "few"), [(5.5, 1.0, False), (-0.5, -1.0, True), (0.5, -1.0, False)])
+def test_a_stop_at_one_end_counts_what_lies_beyond_it(stub, monkeypatch, where, side, few) -> None:
+    stop = Attachment("slide", EndStop())
+    assert asked(stub, monkeypatch, stop, "position", LEVELS, k=1.0, c=0.0, where=where, side=side) is few
+
+
+@pytest.mark.parametrize(("limit", "softness", "few"), [(5.5, 0.0, False), (6.0, 0.0, True), (6.0, 0.5, False)])
+def test_a_limit_that_is_nearly_a_clamp_acts_beyond_it(stub, monkeypatch, limit, softness, few) -> None:
+    clamp = Attachment("actuator", TorqueSaturation())
+    assert asked(stub, monkeypatch, clamp, "input", LEVELS, limit=limit, softness=softness) is few
+
+
+def test_such_a_law_says_nothing_of_the_machine(stub, monkeypatch) -> None:
+    """The search passes over what is not sound."""
+    monkeypatch.setattr(ranked, "degenerate", lambda *a: None)
+    monkeypatch.setattr(ranked, "grows_with_speed", lambda *a: False)
+    found = stub(candidate=stub(attachment=Attachment("growth", ThresholdFlow())), fitted=stub(values=dict))
+    study = stub(surroundings={}, settings=SETTINGS)
+    for few in (True, False):
+        monkeypatch.setattr(ranked, "acts_in_a_few_samples", lambda *a, few=few: few)
+        assert ranked.sound(study, found) is not few
 
 
 def test_a_law_that_acts_anywhere_is_not_asked(stub, monkeypatch) -> None:

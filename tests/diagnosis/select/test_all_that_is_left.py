@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.select.all_that_is_left import (
     limited_by_others_at_its_port,
     limited_by_what_is_left,
     lowest_limit,
+    sizes_at,
 )
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
@@ -118,7 +119,8 @@ def test_less_than_is_left_is_even_odds_at_most(size, left, highest) -> None:
         ((0.14, 0.23), LeftInFreeRuns(0.03, times_noise=2.9), False),  # together they leave little
         ((0.14, 0.23), LeftInFreeRuns(0.13, times_noise=1.1), False),  # or hardly more than noise
         ((0.14, 0.23), LeftInFreeRuns(), False),  # no free run tells
-        ((0.14, float("nan")), LeftInFreeRuns(0.13, times_noise=2.9), True),
+        ((0.14, float("nan")), LeftInFreeRuns(0.13, times_noise=2.9), False),  # one of them may stand for it
+        ((float("nan"), 0.14), LeftInFreeRuns(0.13, times_noise=2.9), False),
     ],
 )
 def test_several_parts_at_one_port_may_be_one_other_law(sizes, left, limited) -> None:
@@ -127,6 +129,14 @@ def test_several_parts_at_one_port_may_be_one_other_law(sizes, left, limited) ->
     assert (limit is not None) is limited
     if limit is not None:
         assert limit.highest == 0.5 and f"none of the {len(sizes)} effects at its port" in limit.why
+
+
+def test_what_is_too_small_to_be_a_finding_is_no_part(stub) -> None:
+    effects = [stub(prefix=p, port=port) for p, port in (("a.x", "a"), ("a.y", "a"), ("a.z", "a"), ("b.x", "b"))]
+    by_effect = {"a.x": 0.45, "a.y": 0.01, "b.x": 0.3}
+    found = sizes_at("a", stub(effects=effects), by_effect, SETTINGS)
+    assert found[0] == 0.45 and np.isnan(found[1]) and len(found) == 2
+    assert sizes_at("b", stub(effects=effects), by_effect, SETTINGS) == (0.3,)
 
 
 def test_the_lowest_limit_counts(left_much) -> None:

@@ -146,6 +146,48 @@ def test_asked_again_where_its_own_turn_ended_far_behind(told_at_the_motor) -> N
     assert [r.candidate.attachment.port for r in after.steps[0].ranked] == ["load", "motor"], "each law once"
 
 
+def test_what_goes_no_farther_than_by_itself_keeps_its_own_refit(told_at_the_motor, monkeypatch) -> None:
+    search, state = told_at_the_motor
+    step = at_turn_of_both(search, state.steps[0])
+    own = replace(step.ranked[1], fitted=search.plain, gain=0.0)
+    monkeypatch.setattr(module, "fit", lambda *a, **k: search.plain)
+    monkeypatch.setattr(module, "polished", lambda study, fitted, starts: fitted)
+    asked = replace(state, steps=(replace(step, ranked=(step.ranked[0], own)),))
+    assert at_joined_bodies(search.study, asked) is asked
+
+
+def test_a_law_in_finer_steps_is_refitted_in_them_and_is_its_own_rival_once(told_at_the_motor, monkeypatch) -> None:
+    search, state = told_at_the_motor
+    finer = replace(
+        state.current, fits=state.current.fits
+    )  # as after `in_finer_steps`: the step still has the one before
+    refitted = []
+
+    def further(study: Any, fitted: Any, starts: Any) -> Any:
+        refitted.append(fitted)
+        return replace(fitted)
+
+    at_load = search.refitted((attach(search.study.problem.model, "load", QuadraticDrag()),), search.plain)
+    monkeypatch.setattr(module, "fit", lambda *a, **k: at_load)
+    monkeypatch.setattr(module, "polished", further)
+    after = at_joined_bodies(search.study, state.at(finer))
+    assert any(fitted is finer for fitted in refitted)
+    assert sorted(r.candidate.attachment.port for r in after.steps[0].ranked) == ["load", "motor"]
+
+
+@pytest.mark.parametrize(("better", "refits"), [(0.1, "most"), (0.0, 1)])
+def test_refits_end_where_they_hardly_better_a_law(stub, monkeypatch, better, refits) -> None:
+    asked = []
+    monkeypatch.setattr(
+        module,
+        "polished",
+        lambda study, fitted, starts: asked.append(0) or stub(score=fitted.score - better, values=dict),
+    )
+    study = stub(budget=stub(most_polishes=4), settings=stub(hardly_better=0.001), card={})
+    module._converged(study, stub(score=1.0, values=dict))
+    assert len(asked) == (4 if refits == "most" else refits)
+
+
 def at_turn_of_both(search: Any, step: SelectionStep) -> SelectionStep:
     """The step with the law at the load among those that had a turn in it."""
     law = attach(search.study.problem.model, "load", QuadraticDrag())
