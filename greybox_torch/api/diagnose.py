@@ -138,5 +138,5 @@ def _with_question(
             return asked_where_poor(data, model, scores["refit"], simulator, progress)
 
     slip, _ = or_else(asked, lambda: None)
-    told = verdict if slip is None else with_question(verdict, slip.question, slip.reaches)
+    told = verdict if slip is None else with_question(verdict, slip.question, slip.reaches, slip.lead)
     return replace(found, verdict=replace(told, seconds=verdict.seconds + time.perf_counter() - began))

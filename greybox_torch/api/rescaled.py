@@ -75,11 +75,12 @@ def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also
         also: what was refitted beside it, a clause.
     """
     as_it_is = f" instead of {digits(100.0 - left, 3)} %" if np.isfinite(left) else ""
+    lead = f"{change.question}{also}"
     question = (
-        f"{change.question}{also}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
+        f"{lead}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
         "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
     )
-    return Asked(question, 100.0 - rest)
+    return Asked(question, 100.0 - rest, lead)
 
 
 def of_units(model: GreyBoxModel) -> Iterator[Change]:

@@ -66,11 +66,12 @@ AS_IT_IS = Change({}, "")
 @dataclass(frozen=True)
 class Asked:
     """A ``question`` to the user, without its full stop, and the mean fit in % that a short refit ``reaches`` on the validation experiments
-    with the channels as it has them.
+    with the channels as it has them. ``lead``: what the question begins with, up to what was changed, which a headline goes on from.
     """
 
     question: str
     reaches: float
+    lead: str
 
 
 def beginnings(data: DataSet) -> DataSet | None:
@@ -148,11 +149,12 @@ def asked_of(
     question = ", or ".join(asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     reaches = 100.0 - min(lefts)
+    lead = f"{question[0].upper()}{question[1:]}? {so}"
     told = (
-        f"{question[0].upper()}{question[1:]}? {so}, a short refit reaches a mean fit of {reaches:.3g} % on "
+        f"{lead}, a short refit reaches a mean fit of {reaches:.3g} % on "
         f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
     )
-    return Asked(told, reaches)
+    return Asked(told, reaches, lead)
 
 
 def judging(data: DataSet) -> str:

@@ -18,7 +18,7 @@ MOST_NAMED = 12
 class NotTried:
     """What was left when a diagnosis was stopped: the ``stages`` that were cut short or left out, and the ``candidates`` (port, mechanism)
     of the present step that were not yet refitted; all that it offers, where its screen did not come to an end. ``pointed_at``: what the
-    first screen put first, each with the share of the error that it explains there, where no step came to its end after it.
+    first screen put first, each with the share of the error that it explains there, where no step of the search came to its end.
     """
 
     stages: tuple[str, ...] = ()
@@ -44,7 +44,7 @@ class NotTried:
             f"{spoken_at(law, port)} ({digits(100 * share, 3)} %)" for (port, law), share in self.pointed_at
         )
         before = f", before {listed(others)}" if others else ""
-        return f"the screen points to {first}{before}, by the share of the error over windows explained there, which no refit has confirmed"
+        return f"the screen points to {first}{before}, by the share of the error over windows explained there, which is not confirmed"
 
     def sentences(self) -> tuple[str, ...]:
         """For a reader."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from greybox_torch.estimate.comparison import Score, mean_fit
+from greybox_torch.estimate.metrics import told_fit
 
 
 def of_no_use(scores: Sequence[Score], effects: bool) -> tuple[str, ...]:
@@ -21,7 +22,7 @@ def of_no_use(scores: Sequence[Score], effects: bool) -> tuple[str, ...]:
     if fit >= 0.0:
         return ()
     which = "The model with what was found" if effects else "The model as it stands, re-estimated,"
-    how = f"validation fit {fit:.1f} %" if np.isfinite(fit) else "a run of it overflows"
+    how = f"validation fit {told_fit(fit, 1)}" if np.isfinite(fit) else "a run of it overflows"
     whatever = ", though it explains much of the error over short windows" if effects else ""
     return (
         f"{which} simulates the validation experiments worse than a constant would ({how}): it is of no use for predicting them{whatever}. "

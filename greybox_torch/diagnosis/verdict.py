@@ -84,8 +84,8 @@ class Verdict:
     """How many times the noise it is where nothing was found, and what is left may be a disturbance that nobody measured."""
     question: str | None = None
     """Whether channels are exchanged or turned, without its full stop, where that would explain much of the mismatch."""
-    question_first: bool = False
-    """Whether it would explain far more than the effects do, so that the sentence begins with it."""
+    question_first: str = ""
+    """What the sentence begins with where the change explains far more than the effects do: what is asked, and what was changed."""
     settings: DiagnosisSettings = DiagnosisSettings()
     """By what it was decided, and with ``budget`` how much was computed for it."""
     budget: SearchBudget = SearchBudget()
@@ -121,9 +121,8 @@ class Verdict:
         parts = [e.headline for e in self.shown_effects]
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
-        if self.question is not None and self.question_first:
-            asked = self.question.partition("?")[0]
-            start = f"{asked}? So changed, a short refit leaves far less than what was found with the card as it is:"
+        if self.question_first:
+            start = f"{self.question_first}, a short refit leaves far less than what was found with the card as it is:"
         so_far = "" if self.complete else "; so far, as the search was stopped"
         return f"{start} {found}{self._gain()}{so_far}."
 

@@ -66,7 +66,9 @@ def _held(values: np.ndarray) -> tuple[np.ndarray, bool]:
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
     changes = np.abs(np.diff(values))
-    changed = changes > BEYOND_NOISE * (np.median(changes) if len(changes) else 0.0)
+    # the last digit of the largest value is noise in any case: where most samples are equal, the median is zero
+    noise = max(np.median(changes), np.spacing(np.abs(values).max())) if len(changes) else 0.0
+    changed = changes > BEYOND_NOISE * noise
     step = np.concatenate([[0], np.cumsum(changed)])[: len(values)]
     means = np.bincount(step, values) / np.bincount(step) if len(values) else values
     return changed, bool(np.std(values - means[step]) <= MOST_BETWEEN * np.std(values)) if len(values) else True

@@ -228,7 +228,7 @@ def test_many_channels_of_one_unit_are_not_exchanged_one_by_one() -> None:
     assert len(asked(many)) == 22 and all("sign" in one for one in asked(many))
 
 
-@pytest.mark.parametrize("found", [None, short_refits.Asked("Are the columns exchanged", 95.0)])
+@pytest.mark.parametrize("found", [None, short_refits.Asked("Are they?", 95.0, "Are they?")])
 def test_the_log_says_what_came_of_it(found: short_refits.Asked | None, monkeypatch: pytest.MonkeyPatch) -> None:
     """Seen: "The validation fit is poor: short refits with channels exchanged, or of the other sign", and no more of it."""
     told: list[str] = []

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.api import with_friction
+from greybox_torch.api.rescaled import of_units
 
 COUNT, STEP = 600, 0.02
 
@@ -83,3 +85,27 @@ def test_a_unit_is_asked_for_with_the_friction_that_lacks(factor: float, asked: 
     if question is not None:
         assert question.startswith("Is the scale of speed right? With values ") and asked in question
         assert ", and with Coulomb friction at rotor, a short refit reaches a mean fit of 9" in question
+
+
+class Train(Drive):
+    """The same with several sensors of the speed."""
+
+    outputs = tuple(gt.Output(f"speed{k}", "rad/s") for k in range(3))
+
+
+class Pair(Drive):
+    outputs = Train.outputs[:2]
+
+
+def test_of_units_only_as_many_changes_as_are_worth_a_refit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No decades, of which no start value says which is nearer, and no more than ``MOST_UNITS`` refits."""
+    factors = sorted(change.factor for change in of_units(Drive()))
+    known = (60.0, 180.0 / np.pi, 30.0 / np.pi)
+    assert factors == pytest.approx(sorted([*known, *(1.0 / one for one in known)]))
+    tried: list[int] = []
+    monkeypatch.setattr(with_friction, "_rubbing", lambda *given: (None, None))
+    monkeypatch.setattr(with_friction, "far_better", lambda short, model, sim, changes, fit: tried.append(len(changes)))
+    data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
+    for model in (Drive(), Pair(), Train()):
+        assert with_friction.rescaled_with_friction(data, model, None, 0.0) is None  # pyright: ignore[reportArgumentType]
+    assert tried == [6, with_friction.MOST_UNITS]

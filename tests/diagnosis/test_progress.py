@@ -80,17 +80,20 @@ def test_stopped_before_a_screen_has_ended(motor_data, motor) -> None:
     assert verdict.evidence[0].startswith("The search was stopped before any mechanism was tested at a port; the model")
 
 
-@pytest.mark.parametrize("cut", ["comparing the equations", "refitting rotor"])
-def test_stopped_after_the_screen_the_answer_says_what_that_points_to(motor_data, motor, cut: str) -> None:
+@pytest.mark.parametrize(
+    ("cut", "after"), [("comparing the equations", 0), ("refitting rotor", 0), ("refitting rotor", 1)]
+)
+def test_stopped_after_the_screen_the_answer_says_what_that_points_to(motor_data, motor, cut: str, after: int) -> None:
     """Seen: 174 tests of a mechanism at a port, and "stopped before it could say what": which of them led was nowhere."""
+    begun = iter(range(after))
 
     def stop(text: str) -> None:
-        if text.startswith(cut):
+        if text.startswith(cut) and next(begun, None) is None:
             raise KeyboardInterrupt
 
     verdict = diagnose(motor_data(400, torque=lambda q, v: -0.004 * v * abs(v)), motor, progress=stop).verdict
     assert not verdict.effects and ": so far, the screen points to " in verdict.sentence
-    assert "quadratic drag at rotor (" in verdict.sentence and "no refit has confirmed" in verdict.sentence
+    assert "quadratic drag at rotor (" in verdict.sentence and "which is not confirmed" in verdict.sentence
     pointed = verdict.as_json()["not_tried"]["pointed_at"]
     assert {"rotor"} == {one["port"] for one in pointed} and "quadratic_drag" in {one["mechanism"] for one in pointed}
     shares = [one["share"] for one in pointed]

@@ -39,7 +39,7 @@ def test_what_a_stopped_search_points_to_is_told_whether_or_not_the_error_is_abo
     told = "so far, the screen points to quadratic drag at rotor (98.1 %), by the share of the error over windows explained there"
     for found in (MISSING, verdict()):
         stopped = replace(found, complete=False, not_tried=pointed).sentence
-        assert f": {told}, which no refit has confirmed." in stopped
+        assert f": {told}, which is not confirmed." in stopped
         assert UNSURE in replace(found, complete=False, not_tried=pointed, unsure=UNSURE).sentence
 
 

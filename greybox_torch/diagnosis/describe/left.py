@@ -12,7 +12,7 @@ from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
 from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 from greybox_torch.estimate.comparison import mean_fit
-from greybox_torch.estimate.metrics import RUNS_AWAY
+from greybox_torch.estimate.metrics import RUNS_AWAY, told_fit
 
 TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
 """Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
@@ -79,12 +79,14 @@ def what_is_left(
         whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
         without, fit = fits
         if shown and fit < 0.0:
-            how_well = f"have a mean fit of {fit:.1f} %, worse than a constant" if np.isfinite(fit) else "overflow"
+            how_well = (
+                f"have a mean fit of {told_fit(fit, 1)}, worse than a constant" if np.isfinite(fit) else "overflow"
+            )
             whole = f"With what was found, free runs of the validation experiments {how_well}"
         elif shown and without < RUNS_AWAY:
             whole = (
-                f"With what was found, free runs of the validation experiments have a mean fit of {fit:.1f} %; those of the model without "
-                "it run away, so that what remains is no share of their error"
+                f"With what was found, free runs of the validation experiments have a mean fit of {told_fit(fit, 1)}; those of the model "
+                "without it run away, so that what remains is no share of their error"
             )
     return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
 

@@ -104,7 +104,7 @@ class ProbabilitySettings:
     )
     far_more_by_a_question: float = share(
         0.5,
-        "Part of what the findings leave to a mean validation fit of 100 % up to which what such a slip leaves is far less.",
+        "A slip on the card leads the verdict where it leaves less to a validation fit of 100 % than this part of what findings leave.",
         unit="share of what is left to a fit of 100 %",
         chosen_by="as a slip has to be beside the model as it stands to be asked about",
     )

@@ -126,6 +126,10 @@ def test_free_runs_that_nothing_could_follow_are_said_to_be_so(stub, over_window
     ("fit", "told"),
     [
         (-73.0, "free runs of the validation experiments have a mean fit of -73.0 %, worse than a constant: in Run 2"),
+        (
+            -4321.0,
+            "free runs of the validation experiments have a mean fit of below -1000 %, worse than a constant: in",
+        ),
         (-np.inf, "free runs of the validation experiments overflow: in Run 2"),
         (12.0, "1.7 % of the mismatch remains in free runs: in Run 2"),
     ],
