@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 import greybox_torch as gt
@@ -35,6 +35,7 @@ def test_what_was_never_set_in_steps_is_kept_where_other_inputs_were(zone) -> No
     assert as_recorded(zone, ["outside", "sun"], {}) == ()  # nothing shows which of them is set
 
 
+@example(0, 1e-16, 20)  # most samples are exactly as the last, some off by a last digit
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.02), st.integers(5, 60))
 def test_steps_are_seen_through_the_noise_of_a_value_read_back(seed: int, noise: float, hold: int) -> None:
     """Seen: a heater's power, set every 20 min and read back with noise, told as never set in steps."""
