@@ -20,7 +20,7 @@ _Kept = TypeVar("_Kept")
 def by_position(files: Sequence[Recorded], clocks: Sequence[Clock]) -> list[tuple[Recorded, Clock]]:
     """The files and their clocks with the column of time stamps called by its position, "#1" for the first, as readers call it.
 
-    None where a file has no such column, one of dates beside it, or one at another position or in another unit than the first file's.
+    Empty where a file has no such column, one of dates beside it, or one at another position or in another unit than the first file's.
     """
     names = [clock.column for clock in clocks]
     if None in names or any(clock.date for clock in clocks) or len({clock.unit for clock in clocks}) > 1:

@@ -25,6 +25,14 @@ NORMAL_99 = 2.58
 """99 % of a standard normal variable lies within plus and minus this."""
 
 
+NEARLY_EVEN = 2.5
+"""Ratio of long to short distances between a slower sensor's samples, at most: in rows of the recording they are of two neighbouring
+lengths, or several times as long where a few are missing. Of samples lost at random most are short and some are many times as long."""
+
+TAILS = (0.1, 0.9)
+"""Shares of the distances that are shorter than the short and the long ones of them."""
+
+
 @dataclass(frozen=True)
 class Correlation:
     """A normalised correlation function: ``values`` (L,) at ``lags`` (L,) in samples, and the 99 % ``bound`` of each value.
@@ -127,12 +135,17 @@ def input_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAGS) 
 
 
 def is_slower(errors: np.ndarray) -> bool:
-    """Whether errors (N,) are of a sensor that is slower than the recording: hardly any two of its samples are in a row.
+    """Whether errors (N,) are of a sensor that is slower than the recording: most of its samples are more than a row apart, and nearly
+    evenly. Samples of which more than half were lost at random are not.
 
     Counted in samples of the recording there were lags without any pair, and others with a pair for one in two samples.
     """
     there = np.flatnonzero(~np.isnan(errors))
-    return len(there) > 1 and bool(np.median(np.diff(there)) > 1)
+    if len(there) < 2:
+        return False
+    rows = np.diff(there)
+    short, long = np.quantile(rows, TAILS)
+    return bool(np.median(rows) > 1 and long <= NEARLY_EVEN * short)
 
 
 def _own_samples(errors: np.ndarray, *signals: np.ndarray) -> tuple[np.ndarray, ...]:

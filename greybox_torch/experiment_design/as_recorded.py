@@ -19,6 +19,10 @@ BEYOND_NOISE = 8.0
 """Times the median change from a sample to the next, which is noise where a value is held, that a change is more than noise: five standard
 deviations of it."""
 
+BEYOND_ROUNDING = 8.0
+"""Steps of a floating-point number of the input's size that a change is more than rounding: where most samples are exactly as the last,
+the median change is zero, and a last digit is no step."""
+
 MOST_BETWEEN = 0.1
 """Part of its own standard deviation by which an input may vary between the steps that it is set in."""
 
@@ -65,13 +69,14 @@ def _held(values: np.ndarray) -> tuple[np.ndarray, bool]:
     """From which of the samples (N,) to the next they change by more than noise, (N - 1,), and whether they keep their value in between."""
     values = np.asarray(values, dtype=float)
     values = values[np.isfinite(values)]
+    if len(values) < 2:  # nothing changes
+        return np.zeros(0, dtype=bool), True
     changes = np.abs(np.diff(values))
-    # the last digit of the largest value is noise in any case: where most samples are equal, the median is zero
-    noise = max(np.median(changes), np.spacing(np.abs(values).max())) if len(changes) else 0.0
-    changed = changes > BEYOND_NOISE * noise
-    step = np.concatenate([[0], np.cumsum(changed)])[: len(values)]
-    means = np.bincount(step, values) / np.bincount(step) if len(values) else values
-    return changed, bool(np.std(values - means[step]) <= MOST_BETWEEN * np.std(values)) if len(values) else True
+    rounding = BEYOND_ROUNDING * np.spacing(np.abs(values).max())
+    changed = changes > max(BEYOND_NOISE * float(np.median(changes)), rounding)
+    step = np.concatenate([[0], np.cumsum(changed)])
+    means = np.bincount(step, values) / np.bincount(step)
+    return changed, bool(np.std(values - means[step]) <= MOST_BETWEEN * np.std(values))
 
 
 def traces_of(recording: Recording, names: Sequence[str], step: float) -> dict[str, np.ndarray]:

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api.start_states import own_fits
+from greybox_torch.api.start_states import begun_far, own_fits
 from greybox_torch.checkpoint import load_checkpoint, save_checkpoint
+from greybox_torch.estimate.far_starts import far_starts
 from tests.api.motor import Motor
 
 
@@ -77,5 +78,15 @@ def test_a_free_run_that_begins_far_from_the_first_sample_is_told(
         assert "though the state is declared to begin as measured" in found[0]
 
 
-def test_a_start_a_little_off_is_not_told(data: gt.DataSet) -> None:
-    assert not any("is begun with" in line for line in gt.simulate(Measured(), data).warnings)
+@pytest.mark.parametrize(("off", "far"), [(0.03, False), (0.2, True)])
+def test_a_start_a_little_off_is_told_by_a_fit_alone(off: float, far: bool) -> None:
+    """With start values that are not the machine's, most free runs begin a little off."""
+    data = stuck(3.0)
+    model = Measured()
+    run = gt.simulate(model, data).run
+    measured = data.recordings[0].signals["speed"]
+    begun = np.array([[measured[0] + off * np.ptp(measured)]])
+    elsewhere = replace(run, comparison=replace(run.comparison, initial=begun))
+    of_fit = far_starts(replace(run.problem, initial=begun))
+    assert len(of_fit) == 1 and "run is begun with speed at" in of_fit[0]
+    assert bool(begun_far({"start": elsewhere})) is far

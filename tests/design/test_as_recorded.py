@@ -35,6 +35,7 @@ def test_what_was_never_set_in_steps_is_kept_where_other_inputs_were(zone) -> No
     assert as_recorded(zone, ["outside", "sun"], {}) == ()  # nothing shows which of them is set
 
 
+@example(0, 1e-16, 20)  # most samples are exactly as the last, some off by a last digit
 @given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.02), st.integers(5, 60))
 @example(0, 2.220446049250313e-16, 60)
 @example(1, 1e-15, 30)

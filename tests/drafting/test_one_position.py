@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.drafting.clock import clock_of
+from greybox_torch.drafting.one_position import by_position
+from greybox_torch.drafting.recorded import recorded
 
 
 class Axis(gt.GreyBoxModel):
@@ -64,3 +69,20 @@ def test_a_name_that_one_of_the_files_lacks_is_told_with_what_to_write(tmp_path:
     place.write_text(place.read_text().replace("time = 1 ", 'time = "Zeit" '))
     with pytest.raises(gt.UserError, match=r'no column "Zeit".*time = 1 for the first column of each'):
         gt.load_dataset(place)
+
+
+@pytest.mark.parametrize("other", [{"unit": "ms"}, {"date": "Datum"}, {"column": None}])
+def test_other_units_and_dates_beside_the_time_have_no_one_position(tmp_path: Path, other: dict[str, Any]) -> None:
+    files = [recorded(path) for path in two_loggers(tmp_path, "time")]
+    clocks = [clock_of(file) for file in files]
+    assert [clock.column for _, clock in by_position(files, clocks)] == ["#1"] * 4
+    assert by_position(files, [*clocks[:-1], replace(clocks[-1], **other)]) == []
+
+
+def test_runs_with_one_name_beside_runs_with_two(tmp_path: Path) -> None:
+    """The one card has to read both."""
+    files = two_loggers(tmp_path, "time")
+    log(tmp_path / "scale_A.csv", "Zeit", 0.004, 0.05, ("position",))
+    gt.card(files, Axis()).save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert [r.name for r in data.recordings] == ["A", "B"]

@@ -143,3 +143,19 @@ def test_lags_of_a_slower_sensor_are_in_its_own_samples(ratio: float, seed: int)
     ):
         np.testing.assert_array_equal(found.values, own.values)
         assert (found.bound, found.tested) == (own.bound, own.tested)
+
+
+@given(st.floats(0.55, 0.95), st.integers(0, 100))
+def test_samples_lost_at_random_are_of_no_slower_sensor(lost: float, seed: int) -> None:
+    """Seen: "sampled more slowly than the rest" of an output with more than half of its samples lost."""
+    rng = np.random.default_rng(seed)
+    errors = np.where(rng.random(4000) < lost, np.nan, 1.0)
+    assert not is_slower(errors) and whiteness(errors).tested == 25
+
+
+@given(st.floats(2.0, 9.0), st.floats(0.0, 0.08), st.integers(0, 100))
+def test_a_slower_sensor_may_lack_some_samples(ratio: float, lost: float, seed: int) -> None:
+    rows = np.unique(np.rint(np.arange(0, 4000, ratio)).astype(int))
+    errors = np.full(4000, np.nan)
+    errors[rows] = np.where(np.random.default_rng(seed).random(len(rows)) < lost, np.nan, 1.0)
+    assert is_slower(errors)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from greybox_torch.diagnosis.hypothesis.differences import differences, of_white_noise
+from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 ROWS, STEP = 6000, 2e-3
 
@@ -43,6 +44,17 @@ def test_the_noise_of_a_slower_sensor_is_shown_whatever_rows_its_samples_stand_i
     """Seen: samples 2 and 3 rows apart in turn, whose motion was told as 60 times the noise."""
     y, time = in_rows(ratio, noise, seed)
     assert shown(y, time + start, order) == pytest.approx(noise, rel=0.15)
+
+
+def test_the_noise_of_samples_2_and_3_rows_apart_in_turn_is_shown_where_motion_is_far_larger():
+    """Seen: the motion between them, told as 60 times the noise."""
+    order, noise = DiagnosisSettings().noise_differences, 5e-6
+    y, time = in_rows(2.5, noise, 0)
+    known = y[~np.isnan(y)]
+    assert set(np.diff(np.flatnonzero(~np.isnan(y)))) == {2, 3}
+    taken_as_even = np.sqrt(np.mean(np.diff(known, order) ** 2) / of_white_noise(order))
+    assert taken_as_even > 10.0 * noise
+    assert shown(y, time, order) == pytest.approx(noise, rel=0.15)
 
 
 def test_few_samples_in_a_row_do_not_speak_for_all_others():
