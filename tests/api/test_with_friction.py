@@ -8,6 +8,9 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
+from greybox_torch.api import short_refits, with_friction
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import simulator_for
 
 COUNT, STEP = 600, 0.02
 
@@ -83,3 +86,22 @@ def test_a_unit_is_asked_for_with_the_friction_that_lacks(factor: float, asked: 
     if question is not None:
         assert question.startswith("Is the scale of speed right? With values ") and asked in question
         assert ", and with Coulomb friction at rotor, a short refit reaches a mean fit of 9" in question
+
+
+def test_the_model_with_friction_is_made_and_refitted_as_it_is_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: a survey, a simulator and a refit with the friction alone for the signs, and the same again for the units."""
+    surveys, refitted = [], []
+
+    def fit_after(data, model, simulator, change, **given):
+        refitted.extend([change.question] if given.get("refitted", True) else [])
+        return 10.0
+
+    survey = with_friction.survey
+    monkeypatch.setattr(with_friction, "survey", lambda *given: surveys.append(1) or survey(*given))
+    for module in (with_friction.nearest, short_refits.far_better):
+        monkeypatch.setitem(module.__globals__, "fit_after", fit_after)
+    data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
+    simulator = simulator_for(make_problem(data, Drive(), data.estimation()))
+    assert with_friction.changed_with_friction(data, Drive(), simulator, 0.0) is None
+    assert len(surveys) == 1 and refitted.count("") == 1
+    assert any("sign" in one for one in refitted) and any("scale" in one for one in refitted)

@@ -60,7 +60,9 @@ def test_an_input_that_rests_in_some_recordings_is_set_in_others(
     own = {"heater": np.repeat([0.0, 4.0, 0.0, 2.0, 4.0, 0.0], 50), "outside": np.sin(TIME), "y": TIME}
     stepped = own | {"heater": own["heater"] + rng.normal(0.0, noise, len(TIME))}
     resting_runs = [own | {"heater": rest + rng.normal(0.0, noise, len(TIME))} for _ in range(resting)]
-    runs = [gt.Recording.from_arrays(f"day {k}", one, sample_time=1.0) for k, one in enumerate([*resting_runs, stepped])]
+    runs = [
+        gt.Recording.from_arrays(f"day {k}", one, sample_time=1.0) for k, one in enumerate([*resting_runs, stepped])
+    ]
     assert as_recorded(gt.DataSet(runs), ["heater", "outside"], {}) == ("outside",)
 
 
