@@ -8,7 +8,7 @@ from greybox_torch.api.exchanged import exchanged, exchanged_of_other_units
 from greybox_torch.api.rescaled import rescaled
 from greybox_torch.api.short_refits import Asked, beginnings
 from greybox_torch.api.turned_in_one import turned_in_one
-from greybox_torch.api.with_friction import rescaled_with_friction, turned_with_friction
+from greybox_torch.api.with_friction import changed_with_friction
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
 from greybox_torch.model import GreyBoxModel
@@ -42,7 +42,7 @@ def asked_where_poor(
         "The validation fit is poor: trying short refits with channels exchanged, of the other sign, or in another unit or scale"
     )
     made, achieved = simulator(), mean_fit(held_out_scores(refit))
-    ways = (exchanged, exchanged_of_other_units, turned_in_one, rescaled, turned_with_friction, rescaled_with_friction)
+    ways = (exchanged, exchanged_of_other_units, turned_in_one, rescaled, changed_with_friction)
     question = next((asked for way in ways if (asked := way(data, model, made, achieved))), None)
     progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
     return question

@@ -17,7 +17,6 @@ from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
 from greybox_torch.drafting.further_runs import own_columns
-from greybox_torch.drafting.one_position import on_card
 from greybox_torch.drafting.runs import names_of
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
@@ -62,11 +61,14 @@ class CardResult(DraftedFile):
         return f"<data card for {', '.join(file.path.name for file in self.draft.files)}>"
 
     def content(self, folder: Path) -> dict[str, Any]:
+        """The draft as JSON. ``time`` is the column of time stamps by its name, a text; by its position from 1 on, a number, where files
+        joined over time call it differently; null where there is none.
+        """
         clock, runs = self.draft.clock, self.draft.runs
         return {
             "schema": "greybox-card/1",
             "card": str(self.path),
-            "time": None if clock.column is None else on_card(clock.column),
+            "time": clock.on_card,
             "date": clock.date or None,
             "time_unit": clock.unit if clock.column is not None else None,
             "sample_time": clock.sample_time,

@@ -19,6 +19,9 @@ MOST_ALIKE = 28
 are not asked for.
 """
 
+COLUMNS_OR_SCALE = "the card's columns or scale"
+"""What is to be mended where a column or a sign is wrong."""
+
 
 def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where exchanging two channels of one unit, or reversing the sign of one, makes a short refit far better on
@@ -30,7 +33,7 @@ def exchanged(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved
         simulator: of the model, with tangents for its free parameters.
         achieved: the mean fit in % on the validation experiments of the estimate itself; may be minus infinity.
     """
-    return asked_of_best(data, model, simulator, achieved, list(_changes(model)))
+    return _asked_of_best(data, model, simulator, achieved, list(_changes(model)))
 
 
 def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
@@ -38,26 +41,24 @@ def exchanged_of_other_units(data: DataSet, model: GreyBoxModel, simulator: Simu
 
     Arguments as for :func:`exchanged`.
     """
-    return asked_of_best(data, model, simulator, achieved, list(_of_other_units(data, model)))
+    return _asked_of_best(data, model, simulator, achieved, list(_of_other_units(data, model)))
 
 
-def asked_of_best(
-    data: DataSet,
-    model: GreyBoxModel,
-    simulator: Simulator,
-    achieved: float,
-    changes: Sequence[Change],
-    so: str = "So changed",
+def _asked_of_best(
+    data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float, changes: Sequence[Change]
 ) -> Asked | None:
-    """The question of one of the ``changes``, of those that simulate best with the start values; ``so``: what was refitted."""
+    """The question of one of the ``changes``, of those that simulate best with the start values."""
     short = beginnings(data)
-    if short is None or not changes:
+    if short is None:
         return None
+    tried = nearest(short, model, simulator, changes)
+    return asked_of(tried, far_better(short, model, simulator, tried, achieved), data, COLUMNS_OR_SCALE)
+
+
+def nearest(short: DataSet, model: GreyBoxModel, simulator: Simulator, changes: Sequence[Change]) -> list[Change]:
+    """Those of the ``changes``, a few, that simulate best with the start values, in their order."""
     by_start = {k: fit_after(short, model, simulator, change, refitted=False) for k, change in enumerate(changes)}
-    tried = [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
-    return asked_of(
-        tried, far_better(short, model, simulator, tried, achieved), data, "the card's columns or scale", so
-    )
+    return [changes[k] for k in sorted(sorted(by_start, key=lambda k: -by_start[k])[:REFITTED])]
 
 
 def _of_other_units(data: DataSet, model: GreyBoxModel) -> Iterator[Change]:

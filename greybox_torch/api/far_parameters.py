@@ -9,6 +9,8 @@ from greybox_torch.api.ran_away import away, start_values, told_with_start
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.descent import TRUSTED
 from greybox_torch.estimate.fit import Estimation
+from greybox_torch.estimate.metrics import told_fit
+from greybox_torch.estimate.notes import at_bounds
 from greybox_torch.name_lists import listed
 
 FAR_TIMES = 10.0
@@ -26,13 +28,13 @@ def far_parameters(found: Estimation, data: DataSet, fit: float) -> str | None:
     """
     if fit >= TRUSTED:
         return None
-    begun, entries, told_elsewhere = start_values(found, data), estimated_parameters(found), away(found, data, fit)
+    begun, entries = start_values(found, data), estimated_parameters(found)
+    told_elsewhere = {*away(found, data, fit), *at_bounds(found.problem)}
     far = [
         name
         for name, one in entries.items()
         if not one.fixed
         and name not in told_elsewhere
-        and one.value not in (one.lower, one.upper)
         and one.value * begun[name] != 0.0
         and abs(math.log(abs(one.value / begun[name]))) >= math.log(FAR_TIMES)
     ]
@@ -40,7 +42,7 @@ def far_parameters(found: Estimation, data: DataSet, fit: float) -> str | None:
         return None
     it = "it" if len(far) == 1 else "they"
     return (
-        f"Ended far from where {it} began: {listed(told_with_start(found, data, far))}. With a mean fit of {fit:.3g} % {it} may make up "
-        "for something that the model lacks or has wrong, and standard deviations do not say so. Fix what is known of the machine "
-        "({ value = …, fixed = true } in [model.parameters]); `greybox diagnose` looks for what is missing."
+        f"Ended far from where {it} began: {listed(told_with_start(found, data, far))}. With a mean fit of {told_fit(fit, 1)} {it} "
+        "may make up for something that the model lacks or has wrong, and standard deviations do not say so. Fix what is known of the "
+        "machine ({ value = …, fixed = true } in [model.parameters]); `greybox diagnose` looks for what is missing."
     )

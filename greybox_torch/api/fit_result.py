@@ -165,7 +165,7 @@ class FitResult(EstimatedModel):
         """That parameters or start states ran away, without a full stop."""
         return ran_away(self.estimation, self.data, self._fit)
 
-    @property
+    @cached_property
     def _far(self) -> str | None:
         """That parameters ended far from where they began, as a sentence."""
         return far_parameters(self.estimation, self.data, self._fit)

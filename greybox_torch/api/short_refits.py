@@ -116,20 +116,32 @@ def fit_after(
     return fit if np.isfinite(fit) else -np.inf
 
 
+def as_it_is(short: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> float:
+    """The mean fit in % on the validation experiments of the estimate itself, ``achieved``, or of a short refit, whichever is larger."""
+    return max(fit_after(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
+
+
 def far_better(
-    short: DataSet, model: GreyBoxModel, simulator: Simulator, tried: Sequence[Change], achieved: float
+    short: DataSet,
+    model: GreyBoxModel,
+    simulator: Simulator,
+    tried: Sequence[Change],
+    achieved: float,
+    *,
+    refitted: bool = False,
 ) -> tuple[float, list[float]] | None:
     """What is missing to a fit of 100 % as it is, of the estimate or a short refit, and after each change that is refitted; None where none
     of these is far better.
 
     Args:
         achieved: the mean fit in % on the validation experiments of the estimate itself; may be minus infinity.
+        refitted: whether that is one of :func:`as_it_is` already.
     """
-    as_it_is = max(fit_after(short, model, simulator, AS_IT_IS), achieved if np.isfinite(achieved) else -np.inf)
-    left = 100.0 - as_it_is
+    if not tried:
+        return None
+    left = 100.0 - (achieved if refitted else as_it_is(short, model, simulator, achieved))
     lefts = [100.0 - fit_after(short, model, simulator, change) for change in tried]
-    least = min(lefts, default=np.inf)
-    return (left, lefts) if least < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
+    return (left, lefts) if min(lefts) < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
 
 
 def asked_of(

@@ -43,7 +43,7 @@ def begun_far(runs: Runs) -> dict[str, str]:
         given = [state for state, entry in run.data.initial.items() if entry.value is not None]
         begun = run.problem.with_values(run.problem.values, np.array(run.comparison.initial))
         if far := far_starts(begun, given, share=FAR_FROM_MEASURED):
-            told[name] = told_far(far)
+            told[name] = told_far(far, estimated=False)
     return told
 
 

@@ -7,9 +7,9 @@ axis' motor speed in rpm, read as rad/s.
 
 from __future__ import annotations
 
-from greybox_torch.api.exchanged import asked_of_best, sign_turns
+from greybox_torch.api.exchanged import COLUMNS_OR_SCALE, nearest, sign_turns
 from greybox_torch.api.rescaled import asked_of_scale, of_units
-from greybox_torch.api.short_refits import FOLLOWS, Asked, beginnings, far_better
+from greybox_torch.api.short_refits import FOLLOWS, Asked, as_it_is, asked_of, beginnings, far_better
 from greybox_torch.data import DataSet
 from greybox_torch.errors import NumericalError, UserError
 from greybox_torch.estimate.problem import make_problem
@@ -30,36 +30,39 @@ MOST_UNITS = 12
 """Changes of units up to which it is asked: each is refitted, as start values without the friction do not say which is nearer."""
 
 
-def turned_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
+def changed_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
     """A question to the user, where turning the sign of one channel, with Coulomb friction at every body, makes a short refit far better on
-    the validation experiments than both the estimate and a refit with the friction alone; else None.
+    the validation experiments than both the estimate and a refit with the friction alone, or, where none does, values of one channel by a
+    factor that units differ by; else None. Of decades no refit is made: they are many.
 
     Arguments as for :func:`greybox_torch.api.exchanged.exchanged`.
     """
-    made = _rubbing(data, model, simulator, achieved)
-    if made is None:
+    short = beginnings(data)
+    made = None if short is None else _rubbing(short, model, simulator, achieved)
+    if short is None or made is None:
         return None
-    return asked_of_best(data, *made, achieved, list(sign_turns(model)), f"So changed, and {_with(model)}")
-
-
-def rescaled_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> Asked | None:
-    """The same question for values of one channel by a factor that units differ by. Of decades no refit is made: they are many."""
-    short, changes = beginnings(data), list(of_units(model))
-    made = _rubbing(data, model, simulator, achieved) if 0 < len(changes) <= MOST_UNITS else None
-    found = far_better(short, *made, changes, achieved) if short is not None and made is not None else None
+    rubbing, own = made
+    achieved = as_it_is(short, rubbing, own, achieved)
+    turns = nearest(short, rubbing, own, list(sign_turns(model)))
+    found = far_better(short, rubbing, own, turns, achieved, refitted=True)
+    if found is not None:
+        return asked_of(turns, found, data, COLUMNS_OR_SCALE, f"So changed, and {_with(model)}")
+    changes = list(of_units(model))
+    units = changes if len(changes) <= MOST_UNITS else []
+    found = far_better(short, rubbing, own, units, achieved, refitted=True)
     if found is None:
         return None
     left, lefts = found
     best = lefts.index(min(lefts))
-    return asked_of_scale(changes[best], left, lefts[best], data, f", and {_with(model)}")
+    return asked_of_scale(units[best], left, lefts[best], data, f", and {_with(model)}")
 
 
 def _rubbing(
-    data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float
+    short: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float
 ) -> tuple[AugmentedModel, Simulator] | None:
     """The model with Coulomb friction at every body, and a simulator of it; None where it is not asked."""
-    bodies, short = _bodies(model), beginnings(data)
-    if short is None or achieved >= FOLLOWS or not 0 < len(bodies) <= MOST_BODIES:
+    bodies = _bodies(model)
+    if achieved >= FOLLOWS or not 0 < len(bodies) <= MOST_BODIES:
         return None
     try:
         around = survey(model, make_problem(short, model, short.estimation()), simulator)

@@ -14,7 +14,7 @@ from greybox_torch.checking.heat_flows import heat_against_the_fall
 from greybox_torch.checking.influence import Influence, influence
 from greybox_torch.checking.missing_factors import missing_factors
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
-from greybox_torch.checking.negative_masses import negative_masses
+from greybox_torch.checking.negative_masses import negative_masses, with_masses_above_zero
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
 from greybox_torch.checking.points import Points, points_of, start_of, wide_points
 from greybox_torch.checking.port_signs import turned_ports
@@ -110,7 +110,7 @@ def _run(
         return Examination(made, model, in_order(found), None, graph is not None)
     found += [*without_effect(model, acting, graph, source), *not_finite(model, moved, points, source)]
     found += heat_against_the_fall(model, points, source)
-    if not any(negative_masses(model, source)):  # pushed, these go the other way by themselves
-        found += turned_ports(model, points, source)
+    # pushed, negative masses go the other way by themselves, whatever the sign of their port
+    found += turned_ports(model, with_masses_above_zero(model, points), source)
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import torch
 
 from greybox_torch.checking.dimensions import dimension_of, known_dimension
 from greybox_torch.checking.finding import Finding
+from greybox_torch.checking.points import Points
 from greybox_torch.checking.source import Source
 from greybox_torch.in_unit import in_unit
 from greybox_torch.model import GreyBoxModel
@@ -33,6 +37,12 @@ def negative_masses(
                 source.file,
                 source.line_of(f'"{p.name}"'),
             )
+
+
+def with_masses_above_zero(model: GreyBoxModel, points: Points) -> Points:
+    """The points with the masses and inertias that are negative there of the other sign, so that what is pushed goes the way it should."""
+    massive = torch.tensor([[bool(_kind(p.unit))] for p in model.declared_parameters]).reshape(-1, 1)
+    return replace(points, p=torch.where(massive, points.p.detach().abs(), points.p.detach()).requires_grad_())
 
 
 def _kind(unit: str) -> str:

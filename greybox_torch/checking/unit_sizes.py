@@ -56,7 +56,10 @@ def sizes(
         elif node.operation == "constant":
             found[index] = 1.0 if 0.25 <= abs(node.value) <= 4.0 and (12 * node.value).is_integer() else None
         else:
-            found[index] = _combined(graph, index, found, known, differs)
+            try:
+                found[index] = _combined(graph, index, found, known, differs)
+            except ArithmeticError:  # 1000.0 ** 200 is no number of the machine
+                found[index] = None
     return found
 
 

@@ -13,7 +13,6 @@ from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_further_runs, own_columns
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
-from greybox_torch.drafting.one_position import on_card
 from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.recorded import Recorded, recorded
 from greybox_torch.drafting.runs import Run, apart, fullest, names_of, runs_of
@@ -55,8 +54,8 @@ def draft_card(
     """
     files = tuple(recorded(path) for path in paths)
     given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
-    channels = [] if model is None else wanted_of(model)
-    clocks = [given or clock_of(file, [channel.name for channel in channels]) for file in files]
+    wanted = [] if model is None else wanted_of(model)
+    clocks = [given or clock_of(file, [one.name for one in wanted]) for file in files]
     runs = runs_of(files, clocks, model)
     first = runs[0]
     lines = [
@@ -81,7 +80,7 @@ def draft_card(
     missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
     if first.clock.column is None and first.clock.sample_time is None:
         missing.insert(0, f"sample_time: {first.clock.remark}")
-    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(channels)):
+    if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted)):
         missing.append(what_to_do)
     channels = tuple(_remarked(runs, draft) for draft in first.table.channels)
     return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, channels, tuple(missing))
@@ -91,8 +90,7 @@ def _clock(clock: Clock) -> list[str]:
     if clock.column is not None:
         more = f", unit = {toml_text(clock.unit)}" if clock.unit != "s" else ""
         more += f", date = {toml_text(clock.date)}" if clock.date else ""
-        named = on_card(clock.column)
-        column = toml_text(named) if isinstance(named, str) else str(named)
+        column = toml_text(clock.column) if clock.position is None else str(clock.position)
         time = f"{{ column = {column}{more} }}" if more else column
         uneven = f"# resample = {clock.uneven}    # s: the time stamps are uneven; this makes them even"
         return [f"time = {time}    # {clock.remark}", *([uneven] if clock.uneven else [])]

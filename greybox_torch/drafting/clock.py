@@ -50,7 +50,8 @@ class Clock:
 
     ``remark`` says what the guess is from; ``uneven`` the step in s of an even grid where the steps differ, but for gaps, else empty;
     ``gap`` is the longest gap. ``broken`` says where the column does not rise and the file is to be mended, else it is empty. ``date`` is
-    the column of the dates of times of day, else empty. ``said`` is whether anything says the unit.
+    the column of the dates of times of day, else empty. ``said`` is whether anything says the unit. ``position`` is that of the column,
+    from 1 on, where a card names it so (None: by its name).
     """
 
     column: str | None = None
@@ -62,6 +63,12 @@ class Clock:
     broken: str = ""
     date: str = ""
     said: bool = True
+    position: int | None = None
+
+    @property
+    def on_card(self) -> str | int | None:
+        """The column as a card names it: by its name, or by its position."""
+        return self.column if self.position is None else self.position
 
 
 def clock_of(file: Recorded, channels: Collection[str] = ()) -> Clock:

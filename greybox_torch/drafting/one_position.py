@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TypeVar
@@ -11,8 +10,6 @@ from greybox_torch.data.columns import columns_of
 from greybox_torch.drafting.clock import Clock
 from greybox_torch.drafting.recorded import Recorded
 from greybox_torch.name_lists import listed
-
-_POSITION = re.compile(r"#([1-9]\d*)")
 
 _Kept = TypeVar("_Kept")
 
@@ -34,16 +31,10 @@ def by_position(files: Sequence[Recorded], clocks: Sequence[Clock]) -> list[tupl
     return [
         (
             _renamed(file, str(clock.column), f"#{place}"),
-            replace(clock, column=f"#{place}", remark=f"{told}; {clock.remark}"),
+            replace(clock, column=f"#{place}", position=place, remark=f"{told}; {clock.remark}"),
         )
         for file, clock in zip(files, clocks, strict=True)
     ]
-
-
-def on_card(column: str) -> str | int:
-    """A column as a card names it: "#1" is 1."""
-    position = _POSITION.fullmatch(column)
-    return column if position is None else int(position[1])
 
 
 def _place(file: Recorded, column: str) -> int | None:

@@ -59,21 +59,21 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
         by_clock.setdefault((run.clock.column, run.clock.unit), []).append(run)
     if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
         return tuple(alone)
-    apart = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
-    made = [*whole, *(_of_other_names(apart, model) if len(by_clock) > 1 else apart)]
+    by_name = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
+    made = [*whole, *(_of_other_names(by_name, model) if len(by_clock) > 1 else by_name)]
     return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
 
 
-def _of_other_names(apart: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
+def _of_other_names(runs: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
     """The runs that single files make up whose time stamps have another name in each, at one position; as they are where none does."""
-    single = [run for run in apart if len(run.files) == 1]
+    single = [run for run in runs if len(run.files) == 1]
     places = by_position([run.whole for run in single], [run.clock for run in single])
     renamed = [replace(run, whole=file, clock=clock) for run, (file, clock) in zip(single, places, strict=False)]
     joined = _of_loggers(renamed, model) if renamed else []
     if all(len(run.files) == 1 for run in joined):
-        return apart
+        return runs
     used = {file.path for run in joined if len(run.files) > 1 for file in run.files}
-    return [*(run for run in joined if len(run.files) > 1), *(run for run in apart if run.files[0].path not in used)]
+    return [*(run for run in joined if len(run.files) > 1), *(run for run in runs if run.files[0].path not in used)]
 
 
 def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
@@ -162,8 +162,8 @@ def _gains(alone: Sequence[Run], joined: Run) -> bool:
     """
     most = max(len(run.channels) for run in alone)
     dated = all(run.clock.column in run.whole.stamps for run in alone)
-    apart = dated and not any(one.signals & other.signals for one, other in combinations(alone, 2))
-    return len(joined.channels) > most or (apart and most < len(joined.table.channels))
+    none_twice = dated and not any(one.signals & other.signals for one, other in combinations(alone, 2))
+    return len(joined.channels) > most or (none_twice and most < len(joined.table.channels))
 
 
 def _partners(runs: Sequence[Run], others: Sequence[Run]) -> list[Run | None]:

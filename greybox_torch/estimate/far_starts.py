@@ -53,13 +53,18 @@ def far_starts(problem: Problem, given: Collection[str] = (), *, share: float = 
     return told
 
 
-def told_far(far: Sequence[str]) -> str:
-    """What a reader has to know of :func:`far_starts`, without a full stop."""
+def told_far(far: Sequence[str], *, estimated: bool = True) -> str:
+    """What a reader has to know of :func:`far_starts`, without a full stop.
+
+    Args:
+        estimated: whether parameters were estimated with these start states, and so are no reason for them.
+    """
+    parameters = "" if estimated else ", or for parameters that are not the machine's"
     more = f"; and {further(len(far) - _SHOWN, 'experiment')}" if len(far) > _SHOWN else ""
     return (
         f"{'; '.join(far[:_SHOWN])}{more}: farther from the first sample than the sensor's noise explains, though the state is declared to "
-        "begin as measured. Such a start makes up for something that the model lacks or has wrong; [model.initial] name = { fixed = true } "
-        "on the card holds a state at its first sample"
+        f"begin as measured. Such a start may make up for something that the model lacks or has wrong{parameters}; "
+        "[model.initial] name = { fixed = true } on the card holds a state at its first sample"
     )
 
 

@@ -162,9 +162,13 @@ def feedback_correlation(errors: np.ndarray, signal: np.ndarray, lags: int = LAG
     sum of sines) gives zeros. At lag zero it is feedback within the sample time, where the input cannot act on the output as fast.
     An input that is recorded later than it acts, or with noise of its own, looks the same.
 
+    Where the errors are of a slower sensor (:func:`is_slower`), lags are in its samples. What is new in the input is still what the samples
+    of the recording do not predict: those of the sensor leave parts of the input between them, which errors follow without any feedback.
+
     Source: D. A. Pierce, L. D. Haugh, "Causality in temporal systems", Journal of Econometrics 5, 1977.
     """
-    return input_correlation(_new(signal), _new(errors), lags)
+    errors, new = _own_samples(errors, _new(signal))
+    return input_correlation(new, _new(errors), lags)
 
 
 def _new(signal: np.ndarray) -> np.ndarray:

@@ -54,29 +54,39 @@ def has_range(entry: Any) -> bool:
 
 
 def _set_in_steps(data: DataSet, name: str) -> bool:
-    """Whether most changes of a channel stand alone: one sample before and one after it keep their value.
+    """Whether most changes of a channel stand alone, one sample before and one after it keeping their value, and it keeps its value between
+    the changes, over all recordings together: in one it may rest.
 
     A value that is read back has noise. Seen: a heater's power, set every 20 min, each sample of which differed from the last by 0.02 kW,
     told as "never set in steps".
     """
-    held = [_held(r.signals[name]) for r in data.recordings]
-    changes = [changed for changed, _ in held]
+    traces = [_finite(r.signals[name]) for r in data.recordings]
+    changes = [_changed(values) for values in traces]
     alone = sum(int((c[1:-1] & ~c[:-2] & ~c[2:]).sum()) for c in changes)
-    return alone > STEPPED * max(sum(int(c[1:-1].sum()) for c in changes), 1) and all(keeps for _, keeps in held)
+    if alone <= STEPPED * max(sum(int(c[1:-1].sum()) for c in changes), 1):
+        return False
+    between = np.concatenate([_between_changes(*one) for one in zip(traces, changes, strict=True)])
+    return bool(np.sqrt(np.mean(between**2)) <= MOST_BETWEEN * np.std(np.concatenate(traces)))
 
 
-def _held(values: np.ndarray) -> tuple[np.ndarray, bool]:
-    """From which of the samples (N,) to the next they change by more than noise, (N - 1,), and whether they keep their value in between."""
+def _finite(values: np.ndarray) -> np.ndarray:
     values = np.asarray(values, dtype=float)
-    values = values[np.isfinite(values)]
-    if len(values) < 2:  # nothing changes
-        return np.zeros(0, dtype=bool), True
+    return values[np.isfinite(values)]
+
+
+def _changed(values: np.ndarray) -> np.ndarray:
+    """From which of the samples (N,) to the next they change by more than noise, (N - 1,)."""
+    if len(values) < 2:
+        return np.zeros(0, dtype=bool)
     changes = np.abs(np.diff(values))
     rounding = BEYOND_ROUNDING * np.spacing(np.abs(values).max())
-    changed = changes > max(BEYOND_NOISE * float(np.median(changes)), rounding)
-    step = np.concatenate([[0], np.cumsum(changed)])
-    means = np.bincount(step, values) / np.bincount(step)
-    return changed, bool(np.std(values - means[step]) <= MOST_BETWEEN * np.std(values))
+    return changes > max(BEYOND_NOISE * float(np.median(changes)), rounding)
+
+
+def _between_changes(values: np.ndarray, changed: np.ndarray) -> np.ndarray:
+    """The samples (N,) less the mean of those between the same two changes (N - 1,)."""
+    step = np.concatenate([[0], np.cumsum(changed)])[: len(values)]
+    return values - (np.bincount(step, values) / np.bincount(step))[step] if len(values) else values
 
 
 def traces_of(recording: Recording, names: Sequence[str], step: float) -> dict[str, np.ndarray]:

@@ -237,8 +237,7 @@ def test_the_log_says_what_came_of_it(found: short_refits.Asked | None, monkeypa
         "exchanged_of_other_units",
         "rescaled",
         "turned_in_one",
-        "turned_with_friction",
-        "rescaled_with_friction",
+        "changed_with_friction",
     ):
         monkeypatch.setattr(asked_of_channels, other, lambda *given: None)
     data = gt.DataSet([recorded(role, k, {}, {}) for k, role in enumerate(("estimation", "validation"))])

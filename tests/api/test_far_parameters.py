@@ -10,6 +10,7 @@ import pytest
 import greybox_torch as gt
 from greybox_torch.api.far_parameters import far_parameters
 from greybox_torch.estimate.fit import Estimation
+from greybox_torch.estimate.metrics import told_fit
 from tests.api.motor import Motor
 from tests.api.test_fit_many import motors
 
@@ -27,7 +28,8 @@ def at(found: Estimation, name: str, value: float) -> Estimation:
 
 
 @pytest.mark.parametrize(("value", "fit", "told"), [
-    (0.8, 20.0, True), (0.0005, 20.0, True), (0.8, -42.0, True), (0.8, 99.0, False), (0.03, 20.0, False), (1e87, 20.0, False),
+    (0.8, 20.0, True), (0.0005, 20.0, True), (0.8, -42.0, True), (0.8, -12345.0, True), (0.8, -np.inf, True),
+    (0.8, 99.0, False), (0.03, 20.0, False), (1e87, 20.0, False),
 ])  # fmt: skip
 def test_of_a_poor_fit_alone(fitted: tuple[Estimation, gt.DataSet], value: float, fit: float, told: bool) -> None:
     """Seen: a carriage of 271 kg, begun with 8, where dry friction was left out, and no word of it; what ran away is told elsewhere."""
@@ -35,12 +37,14 @@ def test_of_a_poor_fit_alone(fitted: tuple[Estimation, gt.DataSet], value: float
     assert (found is not None) is told
     if found is not None:
         assert found.startswith(
-            f"Ended far from where it began: J = {value:.4g} kg m^2 (begun with 0.02). With a mean fit of {fit:.3g} % "
+            f"Ended far from where it began: J = {value:.4g} kg m^2 (begun with 0.02). With a mean fit of {told_fit(fit, 1)} "
         )
+        assert "inf" not in found and "e+" not in found, "seen: -inf %, -1.23e+04 %"
 
 
 def test_at_a_bound_it_is_told_elsewhere(fitted: tuple[Estimation, gt.DataSet]) -> None:
     estimation, data = fitted
     low = np.where(np.array(estimation.problem.names) == "J", 0.0005, estimation.problem.lower)
     held = replace(estimation, problem=replace(estimation.problem, lower=low))
-    assert far_parameters(at(held, "J", 0.0005), data, 20.0) is None
+    for rounded in (0.0005, 0.0005 * (1.0 + 1e-15)):
+        assert far_parameters(at(held, "J", rounded), data, 20.0) is None

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.api import with_friction
+from greybox_torch.api import short_refits, with_friction
 from greybox_torch.api.rescaled import of_units
+from greybox_torch.estimate.problem import make_problem
+from greybox_torch.estimate.simulators import simulator_for
 
 COUNT, STEP = 600, 0.02
 
@@ -104,8 +106,30 @@ def test_of_units_only_as_many_changes_as_are_worth_a_refit(monkeypatch: pytest.
     assert factors == pytest.approx(sorted([*known, *(1.0 / one for one in known)]))
     tried: list[int] = []
     monkeypatch.setattr(with_friction, "_rubbing", lambda *given: (None, None))
-    monkeypatch.setattr(with_friction, "far_better", lambda short, model, sim, changes, fit: tried.append(len(changes)))
+    monkeypatch.setattr(with_friction, "as_it_is", lambda *given: 0.0)
+    monkeypatch.setattr(with_friction, "nearest", lambda *given: [])
+    monkeypatch.setattr(with_friction, "far_better", lambda *given, **how: tried.append(len(given[3])))
     data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
     for model in (Drive(), Pair(), Train()):
-        assert with_friction.rescaled_with_friction(data, model, None, 0.0) is None  # pyright: ignore[reportArgumentType]
-    assert tried == [6, with_friction.MOST_UNITS]
+        assert with_friction.changed_with_friction(data, model, None, 0.0) is None  # pyright: ignore[reportArgumentType]
+    assert tried[::2] == [0, 0, 0], "signs, which are asked about first"
+    assert tried[1::2] == [6, with_friction.MOST_UNITS, 0]
+
+
+def test_the_model_with_friction_is_made_and_refitted_as_it_is_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: a survey, a simulator and a refit with the friction alone for the signs, and the same again for the units."""
+    surveys, refitted = [], []
+
+    def fit_after(data, model, simulator, change, **given):
+        refitted.extend([change.question] if given.get("refitted", True) else [])
+        return 10.0
+
+    survey = with_friction.survey
+    monkeypatch.setattr(with_friction, "survey", lambda *given: surveys.append(1) or survey(*given))
+    for module in (with_friction.nearest, short_refits.far_better):
+        monkeypatch.setitem(module.__globals__, "fit_after", fit_after)
+    data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
+    simulator = simulator_for(make_problem(data, Drive(), data.estimation()))
+    assert with_friction.changed_with_friction(data, Drive(), simulator, 0.0) is None
+    assert len(surveys) == 1 and refitted.count("") == 1
+    assert any("sign" in one for one in refitted) and any("scale" in one for one in refitted)

@@ -77,6 +77,7 @@ def found(folder: Path, text: str, name: str) -> list[tuple[str, str]]:
         ),
         ("1000 * u.power - p.UA * (x.T - u.air) + port.vessel", "", ""),
         ("p.W * u.power - p.UA * (x.T - u.air) + port.vessel", "", ""),
+        ("p.W * u.power**200 / u.power**199 + port.vessel", "", ""),  # seen: OverflowError
         ("1e3 * (u.power + port.vessel) - p.UA * (x.T - u.air)", "", ""),
         ("p.UA * (u.air + 273.15 - x.T) + port.vessel", "", ""),
     ],

@@ -162,5 +162,10 @@ def test_a_negative_mass_is_no_turned_port() -> None:
             gt.Parameter("d", 50.0, unit="N s/m"),
         ]
 
-    assert told(Light()) == []
+    class LightTurned(Light):
+        """Seen: one negative mass, and no port of the model was looked at."""
+
+        sign = -1.0
+
+    assert told(Light()) == [] and len(told(LightTurned())) == 1
     assert any("negative mass" in f.found for f in gt.check(Light()).findings)

@@ -54,6 +54,21 @@ def test_steps_are_seen_through_the_noise_of_a_value_read_back(seed: int, noise:
     assert as_recorded(data, ["heater", "outside", "gusts"], {}) == ("outside", "gusts")
 
 
+@given(st.integers(0, 2**32 - 1), st.floats(1e-6, 0.02), st.floats(0.0, 4.0), st.integers(1, 4))
+def test_an_input_that_rests_in_some_recordings_is_set_in_others(
+    seed: int, noise: float, rest: float, resting: int
+) -> None:
+    """Seen: a heater stepped in three experiments, and held at a value that is read back with noise in a fourth."""
+    rng = np.random.default_rng(seed)
+    own = {"heater": np.repeat([0.0, 4.0, 0.0, 2.0, 4.0, 0.0], 50), "outside": np.sin(TIME), "y": TIME}
+    stepped = own | {"heater": own["heater"] + rng.normal(0.0, noise, len(TIME))}
+    resting_runs = [own | {"heater": rest + rng.normal(0.0, noise, len(TIME))} for _ in range(resting)]
+    runs = [
+        gt.Recording.from_arrays(f"day {k}", one, sample_time=1.0) for k, one in enumerate([*resting_runs, stepped])
+    ]
+    assert as_recorded(gt.DataSet(runs), ["heater", "outside"], {}) == ("outside",)
+
+
 def test_an_input_with_a_range_or_under_a_loop_is_set(zone) -> None:
     """Seen: an outside temperature that was to follow a triangle wave, since the heater had its limits."""
     assert as_recorded(zone, ["heater", "outside", "sun"], {"heater": {"lower": 0, "upper": 4}}) == ("outside", "sun")

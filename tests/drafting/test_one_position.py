@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import greybox_torch as gt
-from greybox_torch.drafting.clock import clock_of
+from greybox_torch.drafting.clock import Clock, clock_of
 from greybox_torch.drafting.one_position import by_position
 from greybox_torch.drafting.recorded import recorded
 
@@ -52,6 +52,13 @@ def test_time_stamps_of_other_names_at_one_position_are_joined(tmp_path: Path) -
     np.testing.assert_allclose(
         known[2:-2][~np.isnan(known[2:-2])], np.sin(data.recordings[0].time)[2:-2][~np.isnan(known[2:-2])], atol=1e-3
     )
+
+
+@pytest.mark.parametrize(
+    ("clock", "named"), [(Clock(column="#1"), "#1"), (Clock(), None), (Clock("#2", position=2), 2)]
+)
+def test_a_column_that_is_called_like_a_position_keeps_its_name(clock: Clock, named: str | int | None) -> None:
+    assert clock.on_card == named
 
 
 def test_one_name_stays_a_name(tmp_path: Path) -> None:

@@ -68,3 +68,9 @@ def test_a_sensor_that_begins_late_says_nothing_of_the_beginning() -> None:
 def test_a_state_that_the_card_gives_a_value_is_not_begun_as_measured() -> None:
     """Seen: told that the state "is declared to begin as measured", beside the value on the card."""
     assert far_starts(begun(18.6), given=["T"]) == [] and far_starts(begun(18.6), given=["inner"]) != []
+
+
+def test_parameters_that_were_not_estimated_may_be_the_reason() -> None:
+    """Seen: "makes up for something that the model lacks", of a simulation with start values that nobody had estimated."""
+    assert "may make up for" in told_far(["a"]) and "parameters" not in told_far(["a"])
+    assert "or for parameters that are not the machine's; [model.initial]" in told_far(["a"], estimated=False)

@@ -120,6 +120,33 @@ def test_feedback_is_seen_behind_a_wrong_model_and_under_a_coloured_input() -> N
     assert found.values[largest] > 3.0 * found.bound
 
 
+def every(step: int, errors: np.ndarray) -> np.ndarray:
+    """Errors of a sensor that is slower than the recording."""
+    return np.where(np.arange(len(errors)) % step == 0, errors, np.nan)
+
+
+@pytest.mark.parametrize("signal", [white, coloured])
+def test_a_wrong_model_is_no_feedback_of_a_slower_sensor_either(signal: Noise) -> None:
+    """What the sensor's samples leave out of the input is in the errors, and goes on in the input."""
+    rng, outside = np.random.default_rng(5), 0
+    for _ in range(30):
+        u = lfilter([1.0], [1.0, -0.9], signal(rng, 8000))
+        found = feedback_correlation(every(4, lfilter([0.0, 1.0], [1.0, -0.9], u) + 0.1 * white(rng, 8000)), u)
+        outside += found.outside
+    assert outside / (30 * found.tested) < 0.02
+
+
+@pytest.mark.parametrize("step", [2, 5])
+def test_feedback_is_seen_of_a_slower_sensor_too(step: int) -> None:
+    """Seen: not a word of it, as none of the errors has enough others in a row before it."""
+    rng = np.random.default_rng(8)
+    noise = 0.1 * white(rng, 8000)
+    u = white(rng, 8000) + lfilter([*np.zeros(step), 5.0], [1.0], noise)
+    found = feedback_correlation(every(step, noise), u)
+    largest = int(np.argmax(np.abs(found.values)))
+    assert found.lags[largest] == 1 and found.values[largest] > 3.0 * found.bound
+
+
 def test_an_input_without_anything_new() -> None:
     rng = np.random.default_rng(7)
     assert feedback_correlation(white(rng, 2000), periodic(rng, 2000)).largest == 0.0

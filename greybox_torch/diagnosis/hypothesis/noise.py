@@ -92,9 +92,13 @@ def _measured_floor(records: Records, weights: np.ndarray, order: int) -> float:
 def output_floors(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
     """The variance (E, n_y) of white sensor noise by the high-frequency floor of every output, in its unit; NaN where unknown."""
     records, order = problem.records, settings.noise_differences
-    found = np.array([_of_outputs(records, e, order) for e in range(len(records.first))])
-    found /= of_white_noise(order)
-    return found if problem.most_noise is None else np.minimum(found, problem.most_noise)
+    found = once(records, ("floors", order), lambda: _measured_floors(records, order))
+    return found.copy() if problem.most_noise is None else np.minimum(found, problem.most_noise)
+
+
+def _measured_floors(records: Records, order: int) -> np.ndarray:
+    found = [_of_outputs(records, e, order) for e in range(len(records.first))]
+    return np.array(found) / of_white_noise(order)
 
 
 def _of_outputs(records: Records, experiment: int, order: int) -> list[float]:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from greybox_torch.diagnosis.hypothesis.differences import differences, of_white_noise
+from greybox_torch.diagnosis.hypothesis.differences import _divided, differences, of_white_noise
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 
 ROWS, STEP = 6000, 2e-3
@@ -86,3 +86,22 @@ def test_too_few_samples_show_none(there):
     y = np.full(20, np.nan)
     y[:there] = 1.0
     assert differences(y, np.arange(20.0), 3).size == 0
+
+
+@pytest.mark.parametrize("length", [0, 1, 3, 4])
+@pytest.mark.parametrize("value", [np.nan, 1.0])
+def test_an_output_that_is_shorter_than_their_order_shows_none(length, value):
+    """Seen: an IndexError of the window of samples in a row."""
+    assert differences(np.full(length, value), np.arange(float(length)), 4).size == 0
+
+
+@given(st.lists(st.floats(0.2, 5.0), min_size=8, max_size=40), st.sampled_from([3, 4, 5]), st.integers(0, 2**32 - 1))
+def test_divided_differences_are_those_of_polynomials(steps, order, seed):
+    """They take a polynomial of less than their order out of a motion, at any stamps, and keep the size of white noise."""
+    time = np.cumsum(steps)
+    smooth = np.polynomial.Polynomial(np.random.default_rng(seed).standard_normal(order))(
+        (time - time[0]) / np.ptp(time)
+    )
+    assert np.abs(_divided(smooth, time, order)).max() < 1e-6 * max(np.abs(smooth).max(), 1.0)
+    weights = np.array([_divided(row, time, order) for row in np.eye(len(time))])
+    assert (weights**2).sum(axis=0) == pytest.approx(of_white_noise(order))
