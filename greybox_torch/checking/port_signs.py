@@ -12,7 +12,7 @@ from greybox_torch.checking.points import Points
 from greybox_torch.checking.slopes import slopes
 from greybox_torch.checking.source import Source
 from greybox_torch.model import Balance, Body, Coupling, GreyBoxModel
-from greybox_torch.model.ports import value_of
+from greybox_torch.model.ports import Port, value_of
 
 _MOVED = {Body: ("speed", "position"), Coupling: ("deflection", "rate"), Balance: ("level",)}
 """The signals that a force at a port moves, by its kind. The first of them that it moves directly counts: a massless body has no rate of
@@ -59,7 +59,7 @@ def turned_ports(model: GreyBoxModel, points: Points, source: Source) -> Iterato
             break
 
 
-def _told(port: Body | Coupling | Balance, signal: str) -> tuple[str, str]:
+def _told(port: Port, signal: str) -> tuple[str, str]:
     """What a turned port does, and how its term is to be written."""
     if isinstance(port, Coupling):
         return (
