@@ -9,11 +9,15 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
+from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
 from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 
 TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
 """Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
+
+NEARLY_ALL = 0.9
+"""Share of the mean squared error, outputs in units of their noise, from which it is told to be in one."""
 
 
 def what_is_left(
@@ -26,6 +30,7 @@ def what_is_left(
     over_windows: float = np.inf,
     fit: float = 0.0,
     further: str = "",
+    output: str = "",
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
@@ -36,6 +41,7 @@ def what_is_left(
         fit: mean fit of the recommended model on the validation experiments that count, in %. Below zero the share that is left says
             nothing: it may be little of what a model leaves that is lost.
         further: a clause on what would take up much of it, where something would.
+        output: in which nearly all of it is; "" where that is in none.
     """
     share, times, worst = judged.left(effects)
     parts = over_windows <= noise < times and _parts(judged, effects, worst)
@@ -62,6 +68,7 @@ def what_is_left(
     )
     size = (
         f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
+        + (f", nearly all of it in {output}" if output and times >= noise else "")
         if np.isfinite(times)
         else "how much of its error is noise is not known"
     )
@@ -79,6 +86,24 @@ def what_is_left(
             how_well = f"have a mean fit of {fit:.1f} %, worse than a constant" if np.isfinite(fit) else "overflow"
             whole = f"With what was found, free runs of the validation experiments {how_well}"
     return Left(share, times, f"{whole}: {size}. {OF_ESTIMATION}, {how}.")
+
+
+def in_one_output(judged: Judgement, effects: bool) -> str:
+    """The output with nearly all of what the recommended model leaves of the worst experiment; "" where none has it, or there is one."""
+    _, _, worst = judged.left(effects)
+    scores = (judged.with_effects if effects else judged.refit).scores
+    floors = {
+        r.name: row for r, row in zip(judged.recordings, output_floors(judged.problem, judged.settings), strict=True)
+    }
+    errors = {s.output: s.rmse for s in scores if s.experiment == worst}
+    if worst not in floors or len(errors) < 2:
+        return ""
+    noise = dict(zip([o.name for o in judged.problem.model.outputs], floors[worst], strict=True))
+    ratios = {
+        name: error**2 / noise[name] for name, error in errors.items() if np.isfinite(noise[name]) and noise[name] > 0
+    }
+    most = max(ratios, key=lambda name: ratios[name], default="")
+    return most if most and ratios[most] >= NEARLY_ALL * sum(ratios.values()) else ""
 
 
 def _parts(judged: Judgement, effects: bool, experiment: str) -> bool:

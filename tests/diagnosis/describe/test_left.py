@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.describe import left
 from greybox_torch.diagnosis.describe.left import what_is_left
 
 
@@ -135,3 +136,29 @@ def test_little_of_a_mismatch_of_runs_that_are_lost_is_not_told_as_little(stub, 
     left = what_is_left(stub(left=lambda effects: (0.017, 150.0, "Run 2")), [], True, 1.3, fit=fit)
     assert told in left.sentence and left.share == 0.017
     assert ("of the mismatch remains" in left.sentence) is (fit >= 0.0)
+
+
+@pytest.mark.parametrize(
+    ("errors", "noise", "told"),
+    [
+        ((0.1, 1e-3), (0.1, 1e-5), ", nearly all of it in position."),
+        ((0.1, 1e-3), (1e-3, 1e-5), "."),  # both alike
+        ((0.1, 1e-3), (np.nan, 1e-5), ", nearly all of it in position."),
+        ((0.1, 0.0), (np.nan, np.nan), "."),
+        ((0.1,), (1e-4,), "."),  # there is but one
+    ],
+)
+def test_the_output_that_nearly_all_is_left_of_is_named(stub, monkeypatch, errors, noise, told) -> None:
+    """Seen: "150 times the noise", and not of which of two sensors."""
+    names = ["speed", "position"][: len(errors)]
+    scores = [stub(experiment=e, output=n, rmse=r) for e in ("A", "B") for n, r in zip(names, errors, strict=True)]
+    judged = stub(
+        left=lambda effects: (0.634, 105.3, "B"),
+        with_effects=stub(scores=scores),
+        recordings=[stub(name="A"), stub(name="B")],
+        problem=stub(model=stub(outputs=[stub(name=n) for n in names])),
+        settings=None,
+    )
+    monkeypatch.setattr(left, "output_floors", lambda problem, settings: np.array([noise, noise]) ** 2)
+    output = left.in_one_output(judged, True)
+    assert f"highest frequencies){told} On" in what_is_left(judged, [], True, 1.3, output=output).sentence
