@@ -191,6 +191,8 @@ class Effect:
     def sentence(self) -> str:
         """What a reader has to know of it where it is no finding."""
         said, size = spoken_at(self.mechanism, self.port), digits(100 * self.size)
+        values = "" if self.mechanism == "unknown" else listed_with_values(self.shown_parameters, list(self.parameters))
+        said += f" ({values})" if values else ""
         return f"{said} accounts for {size} % of the whole mismatch: {self.why_small}"
 
     def as_json(self) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from greybox_torch.diagnosis.contradictions import contradictions
 from greybox_torch.diagnosis.describe import report_data
 from greybox_torch.diagnosis.describe.effects import describe
 from greybox_torch.diagnosis.describe.evidence import sentences
-from greybox_torch.diagnosis.describe.left import mean_fits, what_is_left
+from greybox_torch.diagnosis.describe.left import in_one_output, mean_fits, what_is_left
 from greybox_torch.diagnosis.describe.ranking import ranking
 from greybox_torch.diagnosis.describe.residual_tests import detect
 from greybox_torch.diagnosis.describe.rivals import Rival, rivals
@@ -161,11 +161,7 @@ def _taken_back(found: Findings, against: Sequence[str]) -> Findings:
 def _as_found(
     found: Findings, dataset: DataSet, model: GreyBoxModel, seed: int, clock: Stopwatch, *, explained: bool = False
 ) -> Diagnosis:
-    """The findings as a verdict, whatever it says.
-
-    Args:
-        explained: whether effects explained the error that are no longer among the findings.
-    """
+    """The findings as a verdict, whatever it says. ``explained``: whether effects explained the error that are no longer among them."""
     study, state, judged = found.study, found.state, found.judged
     effects, refinements = _told(found) if state.effects else ((), ())
     traces = report_data.traces(judged, bool(effects))
@@ -218,6 +214,7 @@ def _as_found(
             over_windows=times_noise(study.problem, state.current, study.settings),
             fits=mean_fits(judged, unstable),
             further=best_further(study, state),
+            output=in_one_output(judged, bool(effects)),
         ),
         unstable=unstable,
         settings=study.settings,

@@ -28,6 +28,7 @@ from greybox_torch.diagnosis.select.other_values import other_values
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
 from greybox_torch.diagnosis.select.search import search
 from greybox_torch.diagnosis.select.state import SearchState
+from greybox_torch.diagnosis.select.weighed_anew import weighed_anew
 from greybox_torch.diagnosis.select.wider_ranges import over_wider_ranges
 from greybox_torch.diagnosis.stopping import best_so_far, or_else
 from greybox_torch.diagnosis.stopwatch import Stopwatch
@@ -104,9 +105,11 @@ def find(
     schedule = Schedule.within(end, free_runs.seconds, study.budget)
     state = replace(state, found_before=found_before)
     study, state, complete = _searched(study, state, before, schedule.searching)
+    weighed: tuple[str, ...] = ()
     if complete and (other := _from_other_values(study, state, schedule.searching)):
         study, state, complete = _searched(*other, before, schedule.searching)
     if complete:
+        study, state, weighed = _weighed_anew(study, state, schedule.searching)
         study, state = _over_wider_ranges(study, state, schedule.searching)
     clock.lap(SEARCH)
     searched = state.current
@@ -124,7 +127,7 @@ def find(
         free_runs=free_runs,
         schedule=schedule,
         complete=all(ended.values()),
-        more=(*used.sentences, *some.sentences),
+        more=(*used.sentences, *some.sentences, *weighed),
         cut=tuple(stage for stage, whole in ended.items() if not whole),
     )
 
@@ -164,6 +167,15 @@ def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> 
     with until(deadline):
         found, _ = or_else(partial(over_wider_ranges, study, state), lambda: None)
     return found or (study, state)
+
+
+def _weighed_anew(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState, tuple[str, ...]]:
+    """What was found with what completes the model once outputs are weighed by what it leaves of each, and a sentence on that; as it is
+    where nothing does.
+    """
+    with until(deadline):
+        found, _ = or_else(partial(weighed_anew, study, state), lambda: None)
+    return (study, state, ()) if found is None else (*found[:2], found[2:])
 
 
 def _from_other_values(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState] | None:

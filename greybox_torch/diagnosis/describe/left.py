@@ -9,6 +9,7 @@ import numpy as np
 from greybox_torch.diagnosis.confirm.judgement import Judgement
 from greybox_torch.diagnosis.describe.residual_tests import Detection
 from greybox_torch.diagnosis.digits import digits
+from greybox_torch.diagnosis.hypothesis.noise import output_floors
 from greybox_torch.diagnosis.verdict import OF_ESTIMATION, Left
 from greybox_torch.diagnosis.without_effects import NOISE_SHOWN
 from greybox_torch.estimate.comparison import mean_fit
@@ -16,6 +17,9 @@ from greybox_torch.estimate.metrics import RUNS_AWAY, told_fit
 
 TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
 """Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
+
+NEARLY_ALL = 0.9
+"""Share of the mean squared error, outputs in units of their noise, from which it is told to be in one."""
 
 
 def what_is_left(
@@ -28,6 +32,7 @@ def what_is_left(
     over_windows: float = np.inf,
     fits: Sequence[float] = (0.0, 0.0),
     further: str = "",
+    output: str = "",
 ) -> Left:
     """What remains on the validation experiments, and whether it is repeatable.
 
@@ -38,6 +43,7 @@ def what_is_left(
         fits: mean fits of the re-estimated and the recommended model on the validation experiments that count, in %. Where the second is
             below zero, or the first runs away, the share that is left says nothing: it may be little of what a model leaves that is lost.
         further: a clause on what would take up much of it, where something would.
+        output: in which nearly all of it is; "" where that is in none.
     """
     share, times, worst = judged.left(effects)
     parts = over_windows <= noise < times and _parts(judged, effects, worst)
@@ -64,6 +70,7 @@ def what_is_left(
     )
     size = (
         f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
+        + (f", nearly all of it in {output}" if output and times >= noise else "")
         if np.isfinite(times)
         else "how much of its error is noise is not known"
     )
@@ -95,6 +102,24 @@ def mean_fits(judged: Judgement, but: frozenset[str]) -> tuple[float, float]:
     """Of the re-estimated model and of the one with effects on the experiments that judge, ``but`` for some, in %."""
     before, after = (mean_fit(judged.judging(run, but).scores) for run in (judged.refit, judged.with_effects))
     return before, after
+
+
+def in_one_output(judged: Judgement, effects: bool) -> str:
+    """The output with nearly all of what the recommended model leaves of the worst experiment; "" where none has it, or there is one."""
+    _, _, worst = judged.left(effects)
+    scores = (judged.with_effects if effects else judged.refit).scores
+    floors = {
+        r.name: row for r, row in zip(judged.recordings, output_floors(judged.problem, judged.settings), strict=True)
+    }
+    errors = {s.output: s.rmse for s in scores if s.experiment == worst}
+    if worst not in floors or len(errors) < 2:
+        return ""
+    noise = dict(zip([o.name for o in judged.problem.model.outputs], floors[worst], strict=True))
+    ratios = {
+        name: error**2 / noise[name] for name, error in errors.items() if np.isfinite(noise[name]) and noise[name] > 0
+    }
+    most = max(ratios, key=lambda name: ratios[name], default="")
+    return most if most and ratios[most] >= NEARLY_ALL * sum(ratios.values()) else ""
 
 
 def _parts(judged: Judgement, effects: bool, experiment: str) -> bool:

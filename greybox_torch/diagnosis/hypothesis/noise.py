@@ -51,7 +51,7 @@ def noise_floor(problem: Problem, settings: DiagnosisSettings) -> float:
     if problem.most_noise is None:
         return _floor(problem, settings.noise_differences)
     known = (~np.isnan(problem.records.y)).sum(axis=1)
-    each = np.nan_to_num(_over_experiments(problem, settings)) * problem.weights**2
+    each = np.nan_to_num(over_experiments(problem, settings)) * problem.weights**2
     return float(known @ each / max(known.sum(), 1))
 
 
@@ -66,7 +66,7 @@ def most_noise(fit: WindowFit, left: np.ndarray, settings: DiagnosisSettings) ->
     """
     problem, samples = fit.problem, fit.windows.steps * len(left)
     left = left * samples / max(samples - len(problem.model.states), 1)
-    less = _over_experiments(problem, settings) > settings.noise_disproved * left
+    less = over_experiments(problem, settings) > settings.noise_disproved * left
     return np.where(less, left, np.inf) if less.any() else None
 
 
@@ -108,7 +108,7 @@ def _of_outputs(records: Records, experiment: int, order: int) -> list[float]:
     return [float(np.mean(r**2)) if r.size else np.nan for r in rough]
 
 
-def _over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
+def over_experiments(problem: Problem, settings: DiagnosisSettings) -> np.ndarray:
     """The mean (n_y,) of :func:`output_floors` over the experiments; NaN where no experiment shows an output."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)

@@ -90,11 +90,16 @@ def weighted_by_noise(study: Study, state: SearchState) -> Study:
     A noisy sensor must not drown an exact one. This is the maximum-likelihood weighting where the outputs' noises are independent, their
     sizes estimated from a first fit. That tells as well where the noise is less than the recordings show (:func:`most_noise`).
     """
-    spread = np.nanstd(study.problem.records.y, axis=1)
     left = squared_errors(state.plain)
-    weights = 1.0 / np.sqrt(left + (1e-4 * spread) ** 2 + 1e-300) if len(left) > 1 else study.problem.weights
+    weights = weights_by(study, left) if len(left) > 1 else study.problem.weights
     most = most_noise(state.plain.fits[0], left, study.settings)
     return replace(study, problem=replace(study.problem, weights=weights, most_noise=most))
+
+
+def weights_by(study: Study, left: np.ndarray) -> np.ndarray:
+    """The weights (n_y,) of outputs of which mean squared errors ``left`` (n_y,), in output units, are left."""
+    spread = np.nanstd(study.problem.records.y, axis=1)
+    return 1.0 / np.sqrt(left + (1e-4 * spread) ** 2 + 1e-300)
 
 
 def squared_errors(fitted: Hypothesis) -> np.ndarray:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from greybox_torch.diagnosis.describe import left
 from greybox_torch.diagnosis.describe.left import what_is_left
 
 
@@ -148,3 +149,29 @@ def test_no_share_is_told_of_the_error_of_a_model_that_runs_away(stub) -> None:
     assert "have a mean fit of 71.6 %; those of the model without it run away" in told and "130 times the noise" in told
     assert "0.01" not in told
     assert "Less than 0.01 %" in what_is_left(judged, [], True, 1.3, fits=(-40.0, 99.9)).sentence
+
+
+@pytest.mark.parametrize(
+    ("errors", "noise", "told"),
+    [
+        ((0.1, 1e-3), (0.1, 1e-5), ", nearly all of it in position."),
+        ((0.1, 1e-3), (1e-3, 1e-5), "."),  # both alike
+        ((0.1, 1e-3), (np.nan, 1e-5), ", nearly all of it in position."),
+        ((0.1, 0.0), (np.nan, np.nan), "."),
+        ((0.1,), (1e-4,), "."),  # there is but one
+    ],
+)
+def test_the_output_that_nearly_all_is_left_of_is_named(stub, monkeypatch, errors, noise, told) -> None:
+    """Seen: "150 times the noise", and not of which of two sensors."""
+    names = ["speed", "position"][: len(errors)]
+    scores = [stub(experiment=e, output=n, rmse=r) for e in ("A", "B") for n, r in zip(names, errors, strict=True)]
+    judged = stub(
+        left=lambda effects: (0.634, 105.3, "B"),
+        with_effects=stub(scores=scores),
+        recordings=[stub(name="A"), stub(name="B")],
+        problem=stub(model=stub(outputs=[stub(name=n) for n in names])),
+        settings=None,
+    )
+    monkeypatch.setattr(left, "output_floors", lambda problem, settings: np.array([noise, noise]) ** 2)
+    output = left.in_one_output(judged, True)
+    assert f"highest frequencies){told} On" in what_is_left(judged, [], True, 1.3, output=output).sentence
