@@ -199,9 +199,7 @@ class SearchBudget:
     finalists: int = count(3, "Hypotheses that are refitted at every window length after their trial.", chosen_by=TIME)
     most_tied: int = count(6, "Named hypotheses that go on where they tie.", chosen_by=TIME)
     front_runners: int = count(3, "Hypotheses that are polished before they are compared.", chosen_by=TIME)
-    most_polishes: int = count(
-        4, "Further refits, at most, of a law that may act at either end of a spring.", chosen_by=TIME
-    )
+    most_polishes: int = count(4, "Further refits of a law that may act at either end of a spring.", chosen_by=TIME)
     most_shapes: int = count(3, "Shapes of a law that it is refitted from against local minima.", chosen_by=TIME)
     order_shifts: tuple[int, ...] = counts(
         (-2, -1, 1, 2),
