@@ -24,7 +24,9 @@ BEFORE_ALONE, ZERO = replace(MASS, at_bound=(True, False)), replace(MASS, augmen
 def asked(monkeypatch: pytest.MonkeyPatch, reaches: float, fit: float, mass: Estimate, times: float) -> tuple[int, str]:
     """How often it was asked, and the question that is told."""
     calls: list[float] = []
-    monkeypatch.setattr(module, "asked_where_poor", lambda *given: calls.append(1) or Asked("Turned?", reaches))
+    monkeypatch.setattr(
+        module, "asked_where_poor", lambda *given: calls.append(1) or Asked("Turned?", reaches, "Turned?")
+    )
     scores = {n: (Score("C", "validation", "y", f, 1.0),) for n, f in (("refit", 20.0), ("augmented", fit))}
     scores["start"] = scores["refit"]
     verdict = Verdict("axis", "Axis", 0, 1.0, 0.97, (DRY,), scores, (), {}, ())
