@@ -9,7 +9,7 @@ from greybox_torch.checking.dimensions import SECOND, Dimension, known_dimension
 from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
-from greybox_torch.checking.tracing import Traced
+from greybox_torch.checking.tracing import LinedGraph, Traced
 from greybox_torch.checking.unit_as_declared import as_declared
 from greybox_torch.checking.unit_sizes import differ, sizes, unit_size
 from greybox_torch.checking.unit_walk import ALIKE, dimensions
@@ -24,7 +24,7 @@ class _Walked:
     each with these two.
     """
 
-    graph: Graph
+    graph: LinedGraph
     names: Names
     units: Mapping[str, str]
     known: Mapping[int, Dimension | None]

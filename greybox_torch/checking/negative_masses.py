@@ -41,7 +41,7 @@ def negative_masses(
 
 def with_masses_above_zero(model: GreyBoxModel, points: Points) -> Points:
     """The points with the masses and inertias that are negative there of the other sign, so that what is pushed goes the way it should."""
-    massive = torch.tensor([[bool(_kind(p.unit))] for p in model.declared_parameters]).reshape(-1, 1)
+    massive = torch.tensor([bool(_kind(p.unit)) for p in model.declared_parameters], dtype=torch.bool).reshape(-1, 1)
     return replace(points, p=torch.where(massive, points.p.detach().abs(), points.p.detach()).requires_grad_())
 
 
