@@ -141,7 +141,8 @@ def test_refinements_and_what_is_left_stand_beside_the_findings() -> None:
     assert [e["mechanism"] for e in found["effects"]] == ["backlash"]
     (refinement,) = found["refinements"]
     assert (refinement["port"], refinement["mechanism"], refinement["size"]) == ("motor", "coulomb_friction", 0.003)
-    assert refinement["sentence"].startswith("Coulomb friction at motor accounts for 0.3 % of the whole mismatch")
+    told_so = "Coulomb friction at motor (half_gap = 0.031 rad) accounts for 0.3 % of the whole mismatch"
+    assert refinement["sentence"].startswith(told_so)
     assert found["left"] == {"share": 0.04, "times_noise": 2.1, "sentence": "4 % of the mismatch remains."}
     assert "coulomb" not in told.sentence
 

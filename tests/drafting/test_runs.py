@@ -35,9 +35,9 @@ class Rig(gt.GreyBoxModel):
     inputs, outputs = [gt.Input("valve", "V")], [gt.Output("position", "m"), gt.Output("pressure", "Pa")]
 
 
-def first(path: Path, start: float = 0.0, clock: str = "Time") -> None:
+def first(path: Path, start: float = 0.0) -> None:
     rows = [f"{start + 2.0 * k:.1f}\t{np.sin(k):.4f}\t{np.cos(k):.4f}" for k in range(N)]
-    path.write_text("\n".join([f"{clock}\tvalve\tposition", "msec\tV\tmm", *rows]))
+    path.write_text("\n".join(["Time\tvalve\tposition", "msec\tV\tmm", *rows]))
 
 
 def second(path: Path, start: float = 0.3) -> None:
