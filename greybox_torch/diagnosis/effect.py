@@ -127,12 +127,12 @@ class Effect:
     def __repr__(self) -> str:
         return f"<effect: {self.mechanism} at {self.port}, probability {self.probability:.2f}>"
 
-    def no_surer_than(self, highest: float) -> Effect:
-        """The same with that probability at most, as a member of its class too."""
+    def no_surer_than(self, highest: float, class_at_most: float = 1.0) -> Effect:
+        """The same with that probability at most, as a member of its class too, and the class with its own."""
         probability, whole = min(self.probability, highest), self.one_of
         if whole is not None:
             members = (replace(m, probability=min(m.probability, highest)) for m in whole.members)
-            whole = replace(whole, members=tuple(members))
+            whole = replace(whole, members=tuple(members), probability=min(whole.probability, class_at_most))
         return replace(self, probability=probability, one_of=whole)
 
     @property

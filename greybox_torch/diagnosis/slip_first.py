@@ -35,7 +35,4 @@ def _doubtful(effect: Effect, highest: float, why: str) -> Effect:
     """An effect that is no surer than that, nor is the class that it is told in."""
     surest = max(effect.probability, 0.0 if effect.one_of is None else effect.one_of.probability)
     limited = (*effect.limited, why) if surest > highest else effect.limited
-    told = replace(effect.no_surer_than(highest), limited=limited)
-    if told.one_of is None:
-        return told
-    return replace(told, one_of=replace(told.one_of, probability=min(told.one_of.probability, highest)))
+    return replace(effect.no_surer_than(highest, highest), limited=limited)

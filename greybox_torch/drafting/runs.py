@@ -69,11 +69,9 @@ def _of_other_names(runs: Sequence[Run], model: GreyBoxModel | None) -> Sequence
     single = [run for run in runs if len(run.files) == 1]
     places = by_position([run.whole for run in single], [run.clock for run in single])
     renamed = [replace(run, whole=file, clock=clock) for run, (file, clock) in zip(single, places, strict=False)]
-    joined = _of_loggers(renamed, model) if renamed else []
-    if all(len(run.files) == 1 for run in joined):
-        return runs
-    used = {file.path for run in joined if len(run.files) > 1 for file in run.files}
-    return [*(run for run in joined if len(run.files) > 1), *(run for run in runs if run.files[0].path not in used)]
+    joined = [run for run in _of_loggers(renamed, model) if len(run.files) > 1] if renamed else []
+    used = {file.path for run in joined for file in run.files}
+    return [*joined, *(run for run in runs if run.files[0].path not in used)]
 
 
 def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:

@@ -14,9 +14,8 @@ from greybox_torch.data.own_samples import missing_samples
 from greybox_torch.report.style import (
     MOST_PANELS,
     STYLE,
-    alone,
-    broken_at_gaps,
     dots_within,
+    plot_samples,
     shown_of,
     since_start,
     with_unit,
@@ -75,10 +74,7 @@ def plot_channels(data: DataSet, along: str = "") -> Figure:
 def _plot(axes: Axes, recording: Recording, channel: Channel, seconds: float) -> None:
     """``seconds`` is one unit of the time axis."""
     values, time = recording.signals[channel.name], since_start(recording) / seconds
-    axes.plot(*broken_at_gaps(time, values), linewidth=0.7)
-    lone = alone(values)
-    if lone.any():
-        axes.plot(time[lone], values[lone], ".", color="tab:blue", markersize=2.0)
+    plot_samples(axes, time, values, linewidth=0.7)
     axes.margins(x=0)
     missing = time[missing_samples(recording, channel.name)]
     if missing.size:

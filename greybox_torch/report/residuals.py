@@ -13,9 +13,8 @@ from greybox_torch.estimate.residuals import Correlation, Residuals
 from greybox_torch.report.style import (
     MOST_PANELS,
     STYLE,
-    alone,
-    broken_at_gaps,
     dots_within,
+    plot_samples,
     shown_of,
     since_start,
     with_unit,
@@ -62,10 +61,7 @@ def _label_once(axes: np.ndarray) -> None:
 
 def _plot_errors(axes: Axes, row: Residuals) -> None:
     unit = time_unit(row.recording.seconds)
-    time, lone = since_start(row.recording) / unit.seconds, alone(row.errors)
-    axes.plot(*broken_at_gaps(time, row.errors), linewidth=0.6)
-    if lone.any():
-        axes.plot(time[lone], row.errors[lone], ".", color="tab:blue", markersize=2.0)
+    plot_samples(axes, since_start(row.recording) / unit.seconds, row.errors, linewidth=0.6)
     axes.margins(x=0)
     axes.set_title(f"{row.recording.name} ({row.recording.role})")
     axes.set_xlabel(unit.label)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from greybox_torch.data import Recording
 from greybox_torch.data.gaps import gap_steps
+
+if TYPE_CHECKING:  # the style of figures is known without drawing any
+    from matplotlib.axes import Axes
 
 STYLE: dict[Any, Any] = {
     "text.parse_math": False,  # a name may hold dollar signs
@@ -35,10 +38,13 @@ def broken_at_gaps(time: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np
     return np.insert(time, after, time[after - 1]), np.insert(values.astype(float), after, np.nan)
 
 
-def alone(values: np.ndarray) -> np.ndarray:
-    """Which of the samples (N,) stand between two missing ones, through which no line goes."""
+def plot_samples(axes: Axes, time: np.ndarray, values: np.ndarray, linewidth: float) -> None:
+    """A line through samples (N,), and dots where one stands between two missing ones, through which no line goes."""
+    axes.plot(*broken_at_gaps(time, values), linewidth=linewidth)
     gone = np.concatenate([[True], np.isnan(values), [True]])
-    return gone[:-2] & ~gone[1:-1] & gone[2:]
+    alone = gone[:-2] & ~gone[1:-1] & gone[2:]
+    if alone.any():
+        axes.plot(time[alone], values[alone], ".", color="tab:blue", markersize=2.0)
 
 
 def with_unit(name: str, unit: str) -> str:
