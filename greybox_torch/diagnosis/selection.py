@@ -23,6 +23,7 @@ from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.places import NOWHERE, Places
 from greybox_torch.diagnosis.schedule import Schedule
 from greybox_torch.diagnosis.select.backward import drop_superfluous
+from greybox_torch.diagnosis.select.friction_behind_springs import friction_behind_springs
 from greybox_torch.diagnosis.select.offered import offer_all
 from greybox_torch.diagnosis.select.other_values import other_values
 from greybox_torch.diagnosis.select.plain_model import fit_plain_model, squared_errors, weighted_by_noise
@@ -109,6 +110,7 @@ def find(
     if complete and (other := _from_other_values(study, state, schedule.searching)):
         study, state, complete = _searched(*other, before, schedule.searching)
     if complete:
+        study, state = _friction_behind_springs(study, state, schedule.searching)
         study, state, weighed = _weighed_anew(study, state, schedule.searching)
         study, state = _over_wider_ranges(study, state, schedule.searching)
     clock.lap(SEARCH)
@@ -160,6 +162,13 @@ def _searched(
             best, complete = best_so_far(search(*begun, before), begun[1], told)
             return begun[0], best, complete
     return *begun, complete
+
+
+def _friction_behind_springs(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState]:
+    """What was found with dry friction at a joined body that moves much less with it, where that goes farther; as it is where not."""
+    with until(deadline):
+        found, _ = or_else(partial(friction_behind_springs, study, state), lambda: None)
+    return found or (study, state)
 
 
 def _over_wider_ranges(study: Study, state: SearchState, deadline: Deadline) -> tuple[Study, SearchState]:

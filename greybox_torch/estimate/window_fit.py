@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from greybox_torch.estimate.carried_starts import carried_starts
+from greybox_torch.estimate.compared import compared
 from greybox_torch.estimate.levenberg_marquardt import ROUGH, Settings
 from greybox_torch.estimate.open_starts import begun_with, open_starts
 from greybox_torch.estimate.problem import Problem
@@ -21,7 +22,6 @@ from greybox_torch.estimate.rival import Rival
 from greybox_torch.estimate.rough_starts import rough_starts
 from greybox_torch.estimate.window_step import Hold, WindowModel, held, stepped
 from greybox_torch.simulation.passes import Pass
-from greybox_torch.simulation.records import Records, once
 from greybox_torch.simulation.simulator import Simulator
 from greybox_torch.simulation.windows import Windows, cut
 
@@ -203,10 +203,13 @@ def evaluate(
     windows: Windows,
     states: np.ndarray,
 ) -> WindowModel | None:
-    """One pass over windows from start ``states`` (W, n_x); None where it overflows."""
+    """One pass over windows from start ``states`` (W, n_x); None where it overflows, or late outputs leave less than there are unknowns."""
     n_p, records, begun = int(problem.free.sum()), problem.window_records, open_starts(problem, windows)
     tangents = {"tangents": n_p > 0, "start_directions": begun.directions}
     asked = Pass(windows, problem.values, states, **tangents, weights=problem.weights)
+    samples = compared(records, windows)
+    if samples <= n_p + len(windows.start) * len(begun.states) and samples < compared(problem.records, windows):
+        return None  # outputs that are later than most of a window is long: what is left to compare any values fit
     run = simulator.run(records, asked)
     assert run.normal is not None
     if not np.isfinite(run.normal).all():
@@ -220,7 +223,7 @@ def evaluate(
         hss=begun.without_bound(h[:, n_p:, n_p:]),
         hsp=h[:, n_p:, :n_p],
         gs=g[:, n_p:],
-        mean_square=float(energies.sum()) / max(_weighted_samples(records, windows), 1),
+        mean_square=float(energies.sum()) / max(samples, 1),
         energies=energies,
         open_states=begun.states,
         away=states[:, begun.states],
@@ -239,10 +242,3 @@ def _exceeds(
     cost = 0.5 * float(run.normal[:, -1, -1].sum())
     cost += hold.cost(states[:, begun.states], begun.states, begun.bound, problem.values[problem.free])
     return not cost < most
-
-
-def _weighted_samples(records: Records, windows: Windows) -> int:
-    """How many samples the windows compare, missing ones not counted."""
-    known = once(records, "known", lambda: np.concatenate([[0], np.cumsum((~np.isnan(records.y)).sum(axis=0))]))
-    ends = np.minimum(windows.start + windows.steps, windows.last + 1)
-    return int((known[ends] - known[windows.start]).sum())

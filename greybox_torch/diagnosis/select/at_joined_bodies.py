@@ -39,7 +39,7 @@ def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
     asked = set(ranked) | {e.named for e in done.parent.effects}
     near = state.current.score + study.settings.score_tie
     done_with = {named for named in asked if named not in ranked or ranked[named].fitted.score < near}
-    laws = [law for law in _elsewhere(study, taken.candidate.attachment) if law.named not in done_with]
+    laws = [law for law in elsewhere(study, taken.candidate.attachment) if law.named not in done_with]
     moved = [found for law in laws if (found := _moved(study, state, taken, law)) is not None]
     moved = [r for r in moved if (own := ranked.get(r.candidate.attachment.named)) is None or _farther(r, own)]
     if not moved:
@@ -47,7 +47,7 @@ def at_joined_bodies(study: Study, state: SearchState) -> SearchState:
     farthest = min(moved, key=lambda r: r.fitted.score)
     moved += _contained(study, state, farthest, asked)
     own = taken
-    if farthest.fitted.score < near and (further := _converged(study, state.current)) is not state.current:
+    if farthest.fitted.score < near and (further := converged(study, state.current)) is not state.current:
         own = judged(taken.candidate, done.parent, further, study.settings)
     again = {r.candidate.attachment.named for r in moved}
     others = [
@@ -65,7 +65,7 @@ def _farther(moved: RankedCandidate, own: RankedCandidate) -> bool:
     return moved.fitted.score < own.fitted.score
 
 
-def _elsewhere(study: Study, law: Attachment) -> Iterator[Attachment]:
+def elsewhere(study: Study, law: Attachment) -> Iterator[Attachment]:
     """A law at each of the bodies that couplings join with its own, where that has the signals it needs."""
     model = study.problem.model
     groups = [[body.name for body in group] for group in joined_bodies(model)]
@@ -84,11 +84,11 @@ def _moved(study: Study, state: SearchState, taken: RankedCandidate, law: Attach
     if fitted is None:
         return None
     if abs(fitted.score - state.current.score) < study.settings.polished_elsewhere:
-        fitted = _converged(study, fitted)
+        fitted = converged(study, fitted)
     return judged(replace(taken.candidate, attachment=law), parent, fitted, study.settings)
 
 
-def _converged(study: Study, fitted: Hypothesis) -> Hypothesis:
+def converged(study: Study, fitted: Hypothesis) -> Hypothesis:
     """``fitted`` polished, also from the model's values on the card, until that hardly betters it.
 
     Along the valley of a law whose parameters make up for one another a refit ends early. Seen: a stop of an arm, of which three more

@@ -34,7 +34,7 @@ def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchSt
     if not state.has_curve or only_noise(study.problem, state.current, study.settings):
         return None
     curves = [e for e in state.effects if isinstance(e.mechanism, Unknown)]
-    around = _ranges_with(study, state.current)
+    around = ranges_with(study, state.current)
     if not any(_beyond(study, c.mechanism.signals(), study.surroundings[c.port], around[c.port]) for c in curves):
         return None
     study, begun = replace(study, surroundings=around), state.at(state.plain)
@@ -44,15 +44,16 @@ def over_wider_ranges(study: Study, state: SearchState) -> tuple[Study, SearchSt
     return study, result_of(without_idle_bumps(study, result_of(drop_superfluous(study, same))))
 
 
-def _ranges_with(study: Study, fitted: Hypothesis) -> dict[str, Surroundings]:
-    """Where the signals around every port of the model as it stands move with the effects of a hypothesis, but for rare values.
+def ranges_with(study: Study, fitted: Hypothesis, rare: float = RARE) -> dict[str, Surroundings]:
+    """Where the signals around every port of the model as it stands move with the effects of a hypothesis, but for a ``rare`` share of the
+    samples at either end.
 
     Over its longest windows, which begin least often: where a state that no sensor shows begins, a window may not say.
     """
     model, over = study.problem.model, fitted.fits[-1]
     names = [s.name for s in fitted.model.states]
     states = states_along(over, fitted.simulator)[:, [names.index(s.name) for s in model.states]]
-    low, high = np.quantile(states, [RARE, 1.0 - RARE], axis=0)
+    low, high = np.quantile(states, [rare, 1.0 - rare], axis=0)
     return surroundings_along(model, over.problem, np.clip(states, low, high))
 
 
