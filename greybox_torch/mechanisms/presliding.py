@@ -85,7 +85,7 @@ class PreslidingHysteresis(Mechanism):
 
     def limit(self, values: Mapping[str, float]) -> tuple[Mechanism, Mapping[str, float]] | None:
         """Coulomb friction that sticks: bristles too short to be seen."""
-        return None if self.sharp or self.falling else (CoulombFriction(sticking=True), {"F_c": values["F"]})
+        return CoulombFriction(sticking=True), {"F_c": values["F"]}
 
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         """With slip that sets in at once, with a level that falls with speed, and with both."""

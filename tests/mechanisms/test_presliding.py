@@ -174,3 +174,13 @@ def test_dry_friction_that_sticks_holds_a_push_below_its_level_and_slides_agains
         stood.append(q)
     assert stood[24_999] < 5e-4 and stood[24_999] == pytest.approx(stood[12_000], abs=5e-6)
     assert v == pytest.approx(0.5 * 0.5, rel=0.05)  # and what the bent bristles give back
+
+
+@pytest.mark.parametrize(("sharp", "falling"), [(False, False), (True, False), (False, True), (True, True)])
+def test_bristles_too_short_to_be_seen_are_dry_friction_that_sticks_in_every_form(sharp: bool, falling: bool) -> None:
+    """Seen: a globe valve's packing, told as bristles of 19 um that slip at once and damp (0.97)."""
+    values = {"F": 45.0, "z_0": 1.9e-5, "sharpness": 0.8, "sigma": 3000.0, "s": 0.005, "v_s": 0.002}
+    ended = PreslidingHysteresis(sharp, falling).limit(values)
+    assert ended is not None
+    law, begun = ended
+    assert isinstance(law, CoulombFriction) and law.sticking and begun == {"F_c": 45.0}
