@@ -184,7 +184,7 @@ def test_refits_end_where_they_hardly_better_a_law(stub, monkeypatch, better, re
         lambda study, fitted, starts: asked.append(0) or stub(score=fitted.score - better, values=dict),
     )
     study = stub(budget=stub(most_polishes=4), settings=stub(hardly_better=0.001), card={})
-    module._converged(study, stub(score=1.0, values=dict))
+    module.converged(study, stub(score=1.0, values=dict))
     assert len(asked) == (4 if refits == "most" else refits)
 
 
