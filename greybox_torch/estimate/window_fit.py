@@ -37,6 +37,9 @@ LEAST_GAIN_RATIO = 1e-4
 FIRST_DAMPING = 1e-2
 """Damping that a descent begins with, as a share of the curvature."""
 
+LEAST_LEFT = 0.5
+"""Share of what was measured that late outputs have to leave: the later they are, the less is compared; nothing is what anything fits."""
+
 CARRY_EVERY = 4
 """Accepted steps after which carried states are brought along anew, with the parameters as they then are."""
 
@@ -203,13 +206,13 @@ def evaluate(
     windows: Windows,
     states: np.ndarray,
 ) -> WindowModel | None:
-    """One pass over windows from start ``states`` (W, n_x); None where it overflows, or late outputs leave less than there are unknowns."""
+    """One pass over windows from start ``states`` (W, n_x); None where it overflows, or late outputs leave hardly anything to compare."""
     n_p, records, begun = int(problem.free.sum()), problem.window_records, open_starts(problem, windows)
     tangents = {"tangents": n_p > 0, "start_directions": begun.directions}
     asked = Pass(windows, problem.values, states, **tangents, weights=problem.weights)
     samples = compared(records, windows)
-    if samples <= n_p + len(windows.start) * len(begun.states) and samples < compared(problem.records, windows):
-        return None  # outputs that are later than most of a window is long: what is left to compare any values fit
+    if samples < LEAST_LEFT * compared(problem.records, windows):
+        return None
     run = simulator.run(records, asked)
     assert run.normal is not None
     if not np.isfinite(run.normal).all():

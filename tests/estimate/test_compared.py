@@ -55,7 +55,15 @@ def test_what_windows_compare(data_set) -> None:
 
 def test_a_window_that_is_compared_with_nothing_is_no_fit(data_set) -> None:
     """Seen: a dead time of 500 samples over windows of 20 to 380: no error at all, and "100 % explained"."""
-    for unknown, told in ((0, True), (10, True), (LENGTH, False)):
+    for unknown, told in ((0, True), (10, True), (15, False), (LENGTH, False)):
         problem, simulator, windows = late(data_set, unknown)
         states = np.zeros((len(windows.start), 1))
         assert (evaluate(problem, simulator, windows, states) is not None) is told
+
+
+def test_outputs_that_are_seldom_measured_may_be_late(data_set) -> None:
+    """Seen: a position in every twentieth row, 0.2 s late: no fit of a dead time, and two lags told instead (0.97)."""
+    problem, simulator, windows = late(data_set, 1)
+    seldom = np.where(np.arange(200) % LENGTH == 7, problem.records.y, np.nan)
+    problem = replace(problem, records=replace(problem.records, y=seldom))
+    assert evaluate(problem, simulator, windows, np.zeros((len(windows.start), 1))) is not None

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -28,11 +29,11 @@ from greybox_torch.diagnosis.select.forward import take_effects
 from greybox_torch.diagnosis.select.forward_step import little_is_left
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.diagnosis.select.wider_ranges import ranges_with
-from greybox_torch.diagnosis.stopping import result_of
+from greybox_torch.diagnosis.stopping import or_else, result_of
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.friction import CoulombFriction
-from greybox_torch.mechanisms.mechanism import Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.stribeck import StribeckFriction
 
@@ -64,22 +65,17 @@ def friction_behind_springs(study: Study, state: SearchState) -> tuple[Study, Se
     if not slower and not bent:
         return None
     study = replace(study, surroundings={**study.surroundings, **slower})
-    found = [
-        there
-        for effect in held
-        if (
-            there := _elsewhere(
-                study, state, effect, [law for law in _laws(study, state, effect) if bent or law[0].port in slower]
-            )
-        )
-    ]
-    best = min(found, key=lambda one: priced_score(one.current, study.settings), default=state)
-    if (
-        priced_score(best.current, study.settings)
-        > priced_score(state.current, study.settings) - study.settings.least_gain
-    ):
+    found = []
+    for effect in held:
+        laws = [law for law in _laws(study, state, effect) if bent or law[0].port in slower]
+        found += [there for there in (_elsewhere(study, state, effect, laws),) if there is not None]
+    price = partial(priced_score, settings=study.settings)
+    best = min(found, key=lambda there: price(there.current), default=state)
+    if price(best.current) > price(state.current) - study.settings.least_gain:
         return None
-    return study, best if little_is_left(study, best) else _with_more(study, best)
+    if little_is_left(study, best):
+        return study, best
+    return study, or_else(partial(_with_more, study, best), lambda: best)[0]
 
 
 def _with_more(study: Study, state: SearchState) -> SearchState:
@@ -105,48 +101,54 @@ def _bent(study: Study, fitted: Hypothesis) -> bool:
 
 
 def _laws(study: Study, state: SearchState, effect: Attachment) -> Iterator[Begun]:
-    """The laws that hold a body, at that of ``effect`` and at those that springs join with it, in finer steps."""
+    """The laws that hold a body, at those that springs join with that of ``effect`` and at its own, in finer steps; none without."""
     own, finer = effect.own(state.current.values()), study.budget.substeps_of_dry_friction * study.options.substeps
-    known = next((own[n] for n in LEVELS if n in own), None)
-    level = {} if known is None else {CoulombFriction.parameter: known}
+    level = next((own[n] for n in LEVELS if n in own), 0.0)
     joined = list(elsewhere(study, effect))
-    yield from ((replace(there, substeps=finer), own) for there in joined)
-    for port in (effect.port, *(there.port for there in joined)):
-        for form in (f for f in FORMS if type(f) is not type(effect.mechanism)):
+    for law in joined:
+        yield replace(law, substeps=finer), own
+    for port in (effect.port, *(law.port for law in joined)) if joined else ():
+        for form in (f for f in FORMS if not _same_form(f, effect.mechanism)):
             law = attach(study.problem.model, port, form)
             if possible_form(study, law) and not study.beliefs.exclude(law):
-                yield replace(law, substeps=finer), level
+                yield replace(law, substeps=finer), dict.fromkeys(LEVELS, level)
+
+
+def _same_form(one: Mechanism, other: Mechanism) -> bool:
+    return type(one) is type(other) and vars(one) == vars(other)
 
 
 def _elsewhere(study: Study, state: SearchState, effect: Attachment, laws: Sequence[Begun]) -> SearchState | None:
-    """``state`` as if the step that took ``effect`` had taken the one of ``laws`` that goes farthest, without what was taken later."""
+    """``state`` as if the step that took ``effect`` had taken the one of ``laws`` that goes farthest, without what was taken later or
+    beside it, whichever goes farther; None where none can be fitted.
+    """
     done = state.step_of(effect.prefix)
     if done is None:
         return None
-    ranked = in_order([r for law in laws if (r := _refitted(study, state, done, effect, law))], study.settings)
+    there = {e.prefix for e in (*done.parent.effects, *state.effects)} - {effect.prefix}
+    asked = [law for law in laws if law[0].prefix not in there]
+    ranked = in_order([r for law in asked if (r := _refitted(study, state, done, effect, law))], study.settings)
     taken = chosen([r for r in ranked if sound(study, r)], state.plain, study.settings)
     if taken is None:
         return None
-    step = replace(done, ranked=tuple(in_order([*ranked, *done.ranked], study.settings)), taken=taken, led=None)
-    before = tuple(s for s in state.steps[: state.steps.index(done)] if s.taken is not None)
-    alone = SearchState(
-        state.plain, taken.fitted, (*before, step), found_before=state.found_before, screens=state.screens
-    )
+    every = in_order([*ranked, *done.ranked], study.settings)
+    best = {r.candidate.attachment.named: r for r in reversed(every)} | {taken.candidate.attachment.named: taken}
+    step = replace(done, ranked=tuple(r for r in every if any(r is b for b in best.values())), taken=taken, led=None)
+    steps = tuple(step if s is done else s for s in state.steps)
     beside = _beside_the_rest(study, state, effect, done, taken)
-    if (
-        beside is None
-        or priced_score(beside, study.settings)
-        > priced_score(alone.current, study.settings) - study.settings.least_gain
-    ):
-        return alone
-    return replace(state.at(beside), steps=tuple(step if s is done else s for s in state.steps))
+    least = priced_score(taken.fitted, study.settings) - study.settings.least_gain
+    if beside is not None and priced_score(beside, study.settings) <= least:
+        return replace(state.at(beside), steps=steps)
+    last = next(i for i, s in enumerate(steps) if s is step)
+    before = tuple(s for s in steps[: last + 1] if s.taken is not None)
+    return replace(state.at(taken.fitted), steps=before, named=None, made_up_for=())
 
 
 def _beside_the_rest(
     study: Study, state: SearchState, effect: Attachment, done: SelectionStep, taken: RankedCandidate
 ) -> Hypothesis | None:
     """The hypothesis of ``state`` with the law ``taken`` in the place of ``effect``; None where that was all, or cannot be fitted."""
-    if len(state.effects) == len(done.parent.effects) + 1:
+    if state.prefixes - {effect.prefix} == {e.prefix for e in done.parent.effects}:
         return None
     effects = state.with_law(effect, taken.candidate.attachment)
     fitted = fit(study, effects, [{**state.current.values(), **taken.fitted.values()}], state.current.fits[0])

@@ -14,7 +14,7 @@ from greybox_torch.diagnosis.select import friction_behind_springs as module
 from greybox_torch.diagnosis.select.friction_behind_springs import friction_behind_springs
 from greybox_torch.diagnosis.select.state import SearchState, SelectionStep
 from greybox_torch.mechanisms.attachment import attach
-from greybox_torch.mechanisms.friction import QuadraticDrag
+from greybox_torch.mechanisms.friction import CoulombFriction, QuadraticDrag
 from greybox_torch.mechanisms.presliding import PreslidingHysteresis
 from greybox_torch.mechanisms.surroundings import Range
 from greybox_torch.model import Body, Coupling, GreyBoxModel, Input, Output, Parameter, State
@@ -140,3 +140,36 @@ def test_what_goes_no_farther_behind_the_spring_stays(told_at_the_motor, monkeyp
     search, state = told_at_the_motor
     monkeypatch.setattr(module, "fit", lambda *_: None)
     assert friction_behind_springs(ringing(search, 30.0), state) is None
+
+
+def test_a_law_that_is_there_already_is_not_asked_again(told_at_the_motor) -> None:
+    """A body has one law of a name: with two a diagnosis ended with an error."""
+    search, state = told_at_the_motor
+    blade = attach(search.study.problem.model, "blade", CoulombFriction())
+    first = search.refitted((blade,), search.plain)
+    motor = state.effects[0]
+    both = search.refitted((blade, motor), first, [{**first.values(), **state.current.values()}])
+    steps = tuple(
+        SelectionStep((), parent, (r,), r)
+        for parent, law, fitted in ((search.plain, blade, first), (first, motor, both))
+        for r in (judged(Candidate(law, (), 0.5), parent, fitted, search.study.settings),)
+    )
+    found = friction_behind_springs(ringing(search, 30.0), replace(search.state.at(both), steps=steps))
+    if found is not None:
+        names = [e.named for e in found[1].effects]
+        assert len(names) == len(set(names))
+
+
+def test_what_was_known_of_memory_stays_known(told_at_the_motor) -> None:
+    search, state = told_at_the_motor
+    known = replace(state, memory=state, in_place_of=state.steps[0])
+    found = friction_behind_springs(ringing(search, 30.0), known)
+    assert found is not None and found[1].memory is state and found[1].in_place_of is state.steps[0]
+
+
+def test_each_law_stands_once_among_what_was_asked(told_at_the_motor) -> None:
+    search, state = told_at_the_motor
+    found = friction_behind_springs(ringing(search, 30.0), state)
+    assert found is not None
+    named = [r.candidate.attachment.named for r in found[1].steps[0].ranked]
+    assert len(named) == len(set(named))
