@@ -14,6 +14,7 @@ from greybox_torch.diagnosis.confirm.along_travel import begun_along_travel
 from greybox_torch.diagnosis.effect import Timeline
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, window_lengths
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.hypothesis.same_lengths import over_same_lengths
 from greybox_torch.diagnosis.hypothesis.start_positions import placed, places_in
 from greybox_torch.diagnosis.hypothesis.window_errors import window_errors
 from greybox_torch.diagnosis.places import NOWHERE, Places
@@ -191,12 +192,14 @@ def gain(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> Gain:
     """What ``after`` removes of the error of ``before``, at the window length where that is surest.
 
     The share is a ratio of sums over windows; its standard error is that of a ratio estimator (W. G. Cochran, Sampling Techniques, 1977).
-    Where the model ``before`` cannot be simulated at all, everything is gained.
+    Where ``before`` cannot be simulated over any length that ``after`` can be, everything is gained. Seen: a knee's spring, without which
+    short windows of a leg overflowed and the longest did not; what it removed of them was compared with those of another length, and it
+    was taken back.
     """
-    if after and not before:
+    found, both = [], over_same_lengths(before, after)
+    if after and not both:
         return Gain(1.0, 0.0)
-    found = []
-    for old, new in zip(before, after, strict=False):
+    for old, new in both:
         count, total = len(old.energies), float(old.energies.sum())
         if count == len(new.energies) and total > 0:
             difference = old.energies - new.energies
@@ -224,11 +227,10 @@ def timelines(before: tuple[WindowFit, ...], after: tuple[WindowFit, ...]) -> tu
 
     Windows in which the effect costs a little count as none.
     """
-    pairs = zip(before, after, strict=False)
-    found = next(((old, new) for old, new in pairs if old.windows.steps == new.windows.steps), None)
-    if found is None:
+    both = over_same_lengths(before, after)
+    if not both:
         return ()
-    old, new = found
+    old, new = both[0]
     removed = np.maximum(old.energies - new.energies, 0.0)
     shares, records, windows = removed / max(float(removed.sum()), 1e-300), old.problem.records, old.windows
     of = records.experiments(windows.start)

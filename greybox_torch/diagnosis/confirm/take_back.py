@@ -15,6 +15,7 @@ from greybox_torch.diagnosis.confirm.second_choice import second_choice
 from greybox_torch.diagnosis.confirm.simpler_laws import with_simpler_laws
 from greybox_torch.diagnosis.confirm.standing import sharing_with_the_rest
 from greybox_torch.diagnosis.confirm.wider_laws import with_wider_laws
+from greybox_torch.diagnosis.hypothesis.same_lengths import over_same_lengths
 from greybox_torch.diagnosis.hypothesis.size import size
 from greybox_torch.diagnosis.refit.ranked import doubtful
 from greybox_torch.diagnosis.select.backward import drop, drop_superfluous
@@ -112,7 +113,7 @@ def goes_farther_in_most_windows(
     Beyond the range that it was learned over a curve says nothing: one window that goes there must not decide against it.
     """
     most = 0
-    for before, by_name, by_curve in zip(plain, named, curve, strict=False):
+    for before, by_name, by_curve in over_same_lengths(plain, named, curve):
         energies = [fit.energies for fit in (before, by_name, by_curve)]
         if len({len(e) for e in energies}) > 1:
             return False

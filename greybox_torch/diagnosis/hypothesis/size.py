@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.noise import noise_floor
+from greybox_torch.diagnosis.hypothesis.same_lengths import by_length
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.window_fit import WindowFit
 
@@ -22,13 +23,13 @@ def size(
     effect, as start states take up there what it does; where that is so of every length, its size is zero. Over a length at which it does
     harm (a stop, hit at another instant in one short window) nothing is brought back.
     """
-    shares = []
-    for level, new in enumerate(full):
-        old = without[level] if level < len(without) else None
+    shares, as_it_stands, left_out = [], by_length(plain), by_length(without)
+    for length, new in by_length(full).items():
+        old = left_out.get(length)
         if old is None:
             shares.append(1.0)
             continue
-        whole = plain[level] if level < len(plain) else old
+        whole = as_it_stands.get(length, old)
         noise = noise_floor(new.problem, settings) * new.problem.samples
         brought_back = float(old.energies.sum()) - float(new.energies.sum())
         mismatch = max(float(whole.energies.sum()) - noise, brought_back)

@@ -53,7 +53,8 @@ def test_it_is_said_of_a_curve_of_which_no_names_lasted(monkeypatch, fit: float,
     monkeypatch.setattr(beyond, "first_with_curves", lambda study, state: SimpleNamespace(parent=1.0))
     monkeypatch.setattr(beyond, "curves_of", lambda study, step: [best])
     energies = np.linspace(0.5, 1.5, 20)
-    others: Any = SimpleNamespace(fits=lambda by: (SimpleNamespace(energies=by * energies),))
+    windows = SimpleNamespace(steps=20)
+    others: Any = SimpleNamespace(fits=lambda by: (SimpleNamespace(energies=by * energies, windows=windows),))
     study: Any = SimpleNamespace(settings=DiagnosisSettings())
     told = said_of_the_curve(study, states(), others, judged(fit))
     assert len(told) == said

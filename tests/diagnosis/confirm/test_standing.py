@@ -52,6 +52,13 @@ def test_a_model_that_does_not_simulate_without_it_leaves_the_whole(fits) -> Non
     assert size(fits(1.0), (), fits(4e-4), DiagnosisSettings()) == 1.0
 
 
+def test_sizes_are_of_windows_of_one_length(fits) -> None:
+    """Over its shortest windows a model may overflow without an effect, and not over the longest."""
+    plain, full = fits(1.0), fits(4e-4)
+    assert size(plain[1:], plain[1:], full, DiagnosisSettings()) == pytest.approx(1.0, rel=1e-2)
+    assert size(plain[1:], fits(0.5)[1:], full[1:], DiagnosisSettings()) == pytest.approx(0.5, rel=1e-2)
+
+
 def test_lengths_over_which_nothing_is_missing_say_nothing_of_the_size(fits) -> None:
     """Over short windows start states take up what an effect does: neither model leaves more than noise there."""
     noise, settings = 4e-4, DiagnosisSettings()

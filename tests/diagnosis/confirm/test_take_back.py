@@ -115,8 +115,9 @@ def test_few_windows_alone_do_not_make_an_effect_idle_whose_gain_is_beyond_chanc
 
     Seen: a notch in a stage's friction, rarely passed on held-out experiments, where all of what little was gained was its own.
     """
-    full = (stub(energies=np.ones(8)),)
-    left_out = (stub(energies=np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0])),)
+    windows = stub(steps=20)
+    full = (stub(energies=np.ones(8), windows=windows),)
+    left_out = (stub(energies=np.array([5.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0]), windows=windows),)
     assert 1.0 < gain(left_out, full).errors_away < 3.0 and gain(left_out, full).share == pytest.approx(0.43, abs=0.01)
     state = stub(current=stub(values=dict), without={"rotor.law": None})
     others = stub(fits_at=lambda hypothesis, values: left_out, study=stub(settings=DiagnosisSettings()))
@@ -139,7 +140,8 @@ def test_one_window_beyond_its_range_does_not_decide_against_a_curve(stub, by_na
     def fits(share: float, last: float = 1.0, count: int = 10) -> list[Any]:
         energies = share * np.linspace(0.5, 2.0, count)
         energies[-1] *= last
-        return [stub(energies=energies), stub(energies=energies[: count // 2].copy())]
+        half = energies[: count // 2].copy()
+        return [stub(energies=energies, windows=stub(steps=20)), stub(energies=half, windows=stub(steps=40))]
 
     settings = DiagnosisSettings()
     given = fits(1.0), fits(by_name), fits(by_curve, astray)
