@@ -14,6 +14,7 @@ from greybox_torch.estimate.problem import Problem, make_problem
 from greybox_torch.estimate.simulators import simulator_for
 from greybox_torch.experiment_design.closed_loop import under_feedback
 from greybox_torch.experiment_design.controller import Loop
+from greybox_torch.experiment_design.draws import drawn_with
 from greybox_torch.experiment_design.separation import deviation, scaled_inverse
 from greybox_torch.experiment_design.side_by_side import begun_each, prepared_each
 from greybox_torch.experiment_design.trusted import trusted
@@ -143,10 +144,8 @@ class Contender:
 
     def drawn(self, rng: np.random.Generator) -> Contender:
         """The same with parameters drawn from what is known of them (normally distributed, within their bounds)."""
-        size = len(self.free)
-        values, covariance = self.problem.values.copy(), scaled_inverse(self.information)
-        # What rounding makes of a covariance of very different units is no warning for anybody.
-        values[self.free] += rng.multivariate_normal(np.zeros(size), covariance, method="eigh", check_valid="ignore")
+        values = self.problem.values.copy()
+        values[self.free] += drawn_with(scaled_inverse(self.information), rng)
         values = np.clip(values, self.problem.lower, self.problem.upper)
         return self.at(values) if self.problem.admissible(values) else self
 
