@@ -8,7 +8,7 @@ within less than that on most cards, do.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -27,6 +27,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.data.units import conversion, per_minute
 from greybox_torch.diagnosis.digits import digits
 from greybox_torch.model import GreyBoxModel
+from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
 
 DECADES = (10.0, 100.0, 1000.0)
@@ -34,6 +35,9 @@ DECADES = (10.0, 100.0, 1000.0)
 
 PER_MINUTE, DEGREES, TURNS_PER_MINUTE = 60.0, 180.0 / np.pi, 30.0 / np.pi
 """Those of units with a time, of units with an angle, and of angular speeds."""
+
+BAR = 1e5
+"""Pascals in a bar."""
 
 TEMPERATURES = ("degC", "K", "degF")
 
@@ -78,7 +82,7 @@ def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also
     lead = f"{change.question}{also}"
     question = (
         f"{lead}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
-        "If that is so, mend its scale, unit or file_unit on the card; if not, disregard this"
+        "If that is so, mend the scale, unit or file_unit on the card; if not, disregard this"
     )
     return Asked(question, 100.0 - rest, lead)
 
@@ -93,11 +97,27 @@ def of_units(model: GreyBoxModel) -> Iterator[Change]:
 def _changes(model: GreyBoxModel) -> Iterator[Change]:
     for signals in (model.inputs, model.outputs):
         for signal in signals if len(signals) <= MOST_CHANNELS else ():
-            for times in _factors(signal.unit):
-                larger, smaller = _question(signal.name, times, "as large"), _question(signal.name, times, "smaller")
-                yield Change({signal.name: signal.name}, larger, times)
-                yield Change({signal.name: signal.name}, smaller, 1.0 / times)
+            yield from _times([signal.name], _factors(signal.unit))
             yield from _of_other_zero(signal.name, signal.unit.strip())
+    yield from _of_one_unit(model)
+
+
+def _of_one_unit(model: GreyBoxModel) -> Iterator[Change]:
+    """All channels of one unit, in another: who reads one angle in degrees as radians does so with all. Seen: a leg's hip and knee."""
+    of_unit: dict[str, list[str]] = {}
+    for signal in (*model.inputs, *model.outputs):
+        of_unit.setdefault(signal.unit.strip(), []).append(signal.name)
+    for unit, names in of_unit.items():
+        if 1 < len(names) <= MOST_CHANNELS:
+            yield from _times(names, [factor for factor in _factors(unit) if factor not in DECADES])
+
+
+def _times(names: Sequence[str], factors: Sequence[float]) -> Iterator[Change]:
+    """Each of the ``factors`` either way, for all channels of these names at once."""
+    own = {name: name for name in names}
+    for times in factors:
+        yield Change(own, _question(listed(names), times, "as large"), times)
+        yield Change(own, _question(listed(names), times, "smaller"), 1.0 / times)
 
 
 def _of_other_zero(name: str, unit: str) -> Iterator[Change]:
@@ -112,6 +132,7 @@ def _factors(unit: str) -> list[float]:
     words = set(re.findall(r"[A-Za-z]+", unit))
     times = [PER_MINUTE] if words & {"s", "min", "h", "Hz", "rpm"} else []
     degrees = [DEGREES] if words & {"rad", "deg"} else []
+    degrees += [BAR] if words & {"Pa", "bar"} else []
     if _ANGULAR_SPEED.fullmatch(unit.strip()) or per_minute(unit):
         # no refit tells 9.55 from 10, and of angular speeds rpm are the likelier slip
         return [TURNS_PER_MINUTE, *DECADES[1:], *times, *degrees]
@@ -123,5 +144,6 @@ def _question(name: str, times: float, size: str) -> str:
         PER_MINUTE: " (s and min differ by that)",
         DEGREES: " (rad and deg differ by that)",
         TURNS_PER_MINUTE: " (rpm and rad/s differ by that)",
+        BAR: " (Pa and bar differ by that)",
     }
     return f"Is the scale of {name} right? With values {digits(times, 3)} times {size}{known.get(times, '')}"

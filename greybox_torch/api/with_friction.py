@@ -48,7 +48,8 @@ def changed_with_friction(data: DataSet, model: GreyBoxModel, simulator: Simulat
     if found is not None:
         return asked_of(turns, found, data, COLUMNS_OR_SCALE, f"So changed, and {_with(model)}")
     changes = list(of_units(model))
-    units = changes if len(changes) <= MOST_UNITS else []
+    single = [change for change in changes if len(change.read) == 1]
+    units = next((some for some in (changes, single) if len(some) <= MOST_UNITS), [])
     found = far_better(short, rubbing, own, units, achieved, refitted=True)
     if found is None:
         return None
