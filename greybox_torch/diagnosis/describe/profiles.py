@@ -17,7 +17,7 @@ from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
-from greybox_torch.mechanisms.mechanism import Mechanism, Surroundings
+from greybox_torch.mechanisms.mechanism import Mechanism, Range, Surroundings
 from greybox_torch.mechanisms.unknown import Unknown
 from greybox_torch.mechanisms.waves import drawn_within
 from greybox_torch.simulation.simulator import Simulator
@@ -60,8 +60,8 @@ def most_of(found: Profile, share: float = 0.8) -> tuple[float, float, float]:
 
 
 def law_curve(model: AugmentedModel, attachment: Attachment, around: Surroundings, problem: Problem) -> Curve | None:
-    """The effect's own law over its first signal, or the one that it is drawn over, the others held at their root mean square; None for
-    laws with memory.
+    """The effect's own law over its first signal, or the one that it is drawn over, the others held at their root mean square, with the
+    sign of those that have one alone; None for laws with memory.
 
     Of a curve that multiplies a rate what it takes of that rate: speeds are zero. Its ``factor`` goes by its name at the port.
     """
@@ -75,12 +75,21 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
     if "delayed" in attachment.mechanism.needs or attachment.mechanism.links:
         return None
     still = [n for n in around.ranges if n.startswith("speed")] if attachment.mechanism.by_rate else ()
-    held = {n: torch.full_like(grid, around.ranges[n].rms * (n not in still)) for n in around.ranges if n != name}
+    held = {
+        n: torch.full_like(grid, 0.0 if n in still else _held(around.ranges[n])) for n in around.ranges if n != name
+    }
     force = model.curve(attachment, {**held, name: grid}, problem.parameter_tensors)
     unit = around.units.get("deflection", "") if attachment.mechanism.kinematic else around.force_unit
     values = np.broadcast_to(np.asarray(force, dtype=float), grid.shape)
     factor = _factor(attachment.mechanism, around, held)
     return Curve(name, unit_over, grid.numpy(), values, unit, factor=factor)
+
+
+def _held(moved: Range) -> float:
+    """Where a signal is held: at its root mean square, with its sign where it has one alone. Seen: a pressure drop that was always negative,
+    and a leak drawn with the sign that it never had.
+    """
+    return -moved.rms if moved.high <= 0.0 else moved.rms
 
 
 def _factor(mechanism: Mechanism, around: Surroundings, held: Mapping[str, torch.Tensor]) -> Factor | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.diagnosis.one_of import spoken, spoken_at
 from greybox_torch.in_unit import in_unit
 
@@ -74,5 +75,5 @@ def _either(names: Iterable[str]) -> str:
 
 def _with_unit(value: float, unit: str) -> str:
     if unit == "s" and 0 < value < 0.1:
-        return f"{1e3 * value:.2g} ms"
-    return in_unit(f"{value:.2g}", unit)
+        return f"{digits(1e3 * value)} ms"
+    return in_unit(digits(value), unit)

@@ -180,7 +180,8 @@ def _times(curve: Curve) -> str:
     """What multiplies the curve, as a clause; "" where nothing does."""
     if curve.factor is None:
         return ""
-    return f", in proportion to {text.words(curve.factor.signal)}: drawn where that is {_value(curve.factor)}, its root mean square"
+    size = "its root mean square" if curve.factor.value >= 0 else "minus its root mean square"
+    return f", in proportion to {text.words(curve.factor.signal)}: drawn where that is {_value(curve.factor)}, {size}"
 
 
 def _where_held(curve: Curve) -> str:

@@ -62,6 +62,11 @@ def test_what_multiplies_a_curve_is_given_with_it(motor) -> None:
     assert curve.factor == Factor("position", "rad", 2.5)
     assert curve.force.max() == pytest.approx(2.5, rel=0.02) and curve.force_unit == "N m"
     assert drawn(motor, Unknown("speed"), 5, both).factor is None
+    never_positive = Surroundings(
+        {**AROUND.ranges, "position": Range(-4.0, -1.0, 2.5)}, {"position": "rad"}, "N m", 0.01
+    )
+    curve = drawn(motor, Unknown("speed", factor="position"), 5, never_positive)
+    assert curve.factor == Factor("position", "rad", -2.5) and curve.force.min() == pytest.approx(-2.5, rel=0.02)
 
 
 @pytest.mark.parametrize(("order", "turns"), [(2.0, 1.0), (2.002, 2 / 2.002), (0.25, 4.0)])

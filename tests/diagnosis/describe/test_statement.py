@@ -23,6 +23,7 @@ DRY = Member("motor", "coulomb_friction", "dry friction", 0.6, size=0.52, unit="
         ((DELAY, replace(DELAY, mechanism="sensor_lag", size=0.9)), "some time passes before speed is recorded"),
         ((LAG, replace(DELAY, size=1.5)), "some time passes between torque and measured speed"),
         ((DRY, replace(DRY, port="gearbox")), "dry friction of about 0.52 N m at motor or gearbox"),
+        ((replace(DRY, size=700.1), replace(DRY, size=699.4)), "dry friction of about 700 N m at motor"),
         ((DRY, replace(DRY, port="table", unit="N")), "dry friction at motor or table"),
         ((DRY, replace(DRY, mechanism="presliding_hysteresis", size=None)), "dry friction at motor"),
         (
