@@ -115,7 +115,8 @@ def words(name: str) -> str:
 def title(name: str) -> str:
     """:func:`words` with a capital, which would make another symbol of a symbol."""
     told = words(name)
-    return told if "_" in told or len(told) == 1 else first_capital(told)
+    symbol = "_" in told or len(told) == 1 or told != told.lower()
+    return told if symbol else first_capital(told)
 
 
 def mechanism(name: str) -> str:

@@ -117,3 +117,8 @@ def test_a_sentence_for_a_page_is_escaped_and_has_its_code(before: str, code: st
 @pytest.mark.parametrize(("value", "shown"), [(0.62, "0.6 s"), (42.3, "42 s"), (119.0, "119 s"), (135.0, "2 min 15 s")])
 def test_seconds(value: float, shown: str) -> None:
     assert text.seconds(value) == shown
+
+
+def test_a_symbol_with_a_capital_stays_as_it_is_written() -> None:
+    """Seen: a pressure pA as "PA"."""
+    assert text.title("pA") == "pA" and text.title("motor_speed") == "Motor speed" and text.title("stroke") == "Stroke"

@@ -86,8 +86,9 @@ def law_curve(model: AugmentedModel, attachment: Attachment, around: Surrounding
 
 
 def _held(moved: Range) -> float:
-    """Where a signal is held: at its root mean square, with its sign where it has one alone. Seen: a pressure drop that was always negative,
-    and a leak drawn with the sign that it never had.
+    """Where a signal is held: at its root mean square, with its sign where that never changes.
+
+    Seen: a pressure drop that was always negative, and its leak drawn with the sign that it never had.
     """
     return -moved.rms if moved.high <= 0.0 else moved.rms
 
