@@ -158,6 +158,12 @@ def _seconds(time: Any, where: str) -> tuple[NDArray[np.float64], tuple[str, ...
     if isinstance(stamps, np.ma.MaskedArray) and stamps.dtype.kind in "mM":
         stamps = np.where(np.ma.getmaskarray(stamps), np.array("NaT", dtype=stamps.dtype), stamps.data)
     if isinstance(stamps, np.ndarray) and stamps.dtype.kind in "mM" and stamps.ndim == 1 and stamps.size:
+        if np.datetime_data(stamps.dtype)[0] in ("Y", "M"):  # these are of no length that is always the same
+            if stamps.dtype.kind == "m":
+                raise UserError(
+                    f"{where}: holds {stamps.dtype}; expected seconds, or timedelta64 in weeks, days or shorter"
+                )
+            stamps = stamps.astype("datetime64[s]")
         since = stamps - stamps[0] if stamps.dtype.kind == "M" else stamps
         seconds = since / np.timedelta64(1, "s")
         return np.where(np.isnat(stamps), np.nan, seconds), ()

@@ -100,6 +100,18 @@ def test_dates_and_times_count_from_the_first(unit: str) -> None:
     np.testing.assert_array_equal(made(sample_time=None, time=stamps - stamps[0]).time, np.arange(N) * 2.0)
 
 
+@pytest.mark.parametrize("unit", ["M", "Y"])
+def test_dates_of_months_and_years_count_from_the_first_day(unit: str) -> None:
+    stamps = np.arange(N).astype(f"datetime64[{unit}]")
+    days = [(at.astype("datetime64[D]") - np.datetime64("1970-01-01")).astype(float) for at in stamps]
+    np.testing.assert_array_equal(made(sample_time=None, time=stamps).time, np.array(days) * 86400.0)
+    stamps[12] = "NaT"
+    with pytest.raises(UserError, match=r"time, sample 12 \(the first is 0\): the time stamp is missing"):
+        made(sample_time=None, time=stamps)
+    with pytest.raises(UserError, match=rf'"run", time: holds timedelta64\[{unit}\]; expected seconds, or timedelta64'):
+        made(sample_time=None, time=np.arange(N).astype(f"timedelta64[{unit}]"))
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
