@@ -23,6 +23,9 @@ MOST_TEXT = 64 * 2**20
 _OF_BACKSLASHES = ("Unescaped '\\'", "Invalid hex value")
 """What is said of a path such as C:\\data in quotes."""
 
+_DECIMAL_COMMA = re.compile(r"=\s*[+-]?\d+,\d")
+"""A number with a decimal comma: TOML takes what follows for another key."""
+
 _EXPERIMENTS = "Cannot declare ('experiment',) twice"
 """What is said of a second [experiment] of a card."""
 
@@ -122,7 +125,10 @@ def read_toml(path: Path, expected: str) -> dict[str, Any]:
         hint = "; write paths with / in the place of \\" if backslash else ""
         if str(error).startswith(_EXPERIMENTS):
             hint = "; expected double brackets, [[experiment]], for every recording"
-        raise UserError(f"{path}: not valid TOML: {error}{_line_of(str(error), text)}{hint}") from None
+        line = _line_of(str(error), text)
+        if _DECIMAL_COMMA.search(line):
+            hint = "; expected a decimal point, as in 0.02"
+        raise UserError(f"{path}: not valid TOML: {error}{line}{hint}") from None
 
 
 def _line_of(error: str, text: str) -> str:

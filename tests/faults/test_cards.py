@@ -17,6 +17,8 @@ FAULTS = [
     (TOP, "sample_time = 0", "sample_time: 0 is not a sample time"),
     (TOP, "sample_time = -1e-3", "sample_time: -0.001 is not a sample time"),
     (TOP, "sample_time = nan", "sample_time: found NaN, expected a finite number"),
+    (TOP, "sample_time = 0,01", "sample_time = 0,01; expected a decimal point, as in 0.02"),
+    (TOP, TOP + "\nx = { value = -0,02 }", "x = { value = -0,02 }; expected a decimal point"),
     (TOP, "sample_time = inf", "sample_time: found Infinity, expected a finite number"),
     (TOP, "sample_time = 1e400", "sample_time: found Infinity"),
     (TOP, "sample_time = 1e308", "sample_time: 1e+308 s makes times that are no numbers"),
