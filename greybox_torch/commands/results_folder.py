@@ -34,27 +34,31 @@ NOTHING_WRITTEN = "nothing is written"
 
 
 class Replacing:
-    """Warns once that another command's model is going to be replaced: when the work begins, as arguments that are refused replace nothing.
+    """Warns once that another command's model is going to be replaced: when the work begins, as arguments that are refused replace nothing,
+    or else before results are written, as another process may have written its own meanwhile.
 
     Args:
-        told: the warning, "" for none.
+        look: gives the warning as things are, "" for none.
     """
 
-    def __init__(self, told: str = "") -> None:
-        self._left = [told] if told else []  # several threads may tell of progress, and one takes it
+    def __init__(self, look: Callable[[], str] = lambda: "") -> None:
+        self._look = look
+        self._left, self._begun = [True], False  # several threads may tell of progress, and one takes what is left
 
     def warn(self) -> None:
-        """Say it, unless it is said."""
+        """Say it where there is something to be said, unless it is said."""
+        told = self._look()
         with suppress(IndexError):
-            Console(stderr=True, highlight=False).print(
-                Text(f"warning: {self._left.pop()}", style="yellow"), soft_wrap=True
-            )
+            if told and self._left.pop():
+                Console(stderr=True, highlight=False).print(Text(f"warning: {told}", style="yellow"), soft_wrap=True)
 
     def before(self, hear: Callable[..., None]) -> Callable[..., None]:
         """``hear``, which is told of progress, with the warning before the first of it."""
 
         def heard(*now: object) -> None:
-            self.warn()
+            if not self._begun:
+                self._begun = True
+                self.warn()
             hear(*now)
 
         return heard

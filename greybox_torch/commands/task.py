@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
 import torch
@@ -54,8 +55,8 @@ def load_task(dataset: Path, options: Options, *, writes_model: str = "") -> Tas
     log = Console(stderr=True, highlight=False)
     for found in data_warnings(data, model):
         log.print(Text(f"warning: {dataset}: {found}", style="yellow"), soft_wrap=True)
-    replaced = others_model(folder, writes_model) if writes_model else ""
-    return Task(data, model, device, folder, precision, Replacing(replaced))
+    replacing = Replacing(partial(others_model, folder, writes_model)) if writes_model else Replacing()
+    return Task(data, model, device, folder, precision, replacing)
 
 
 def simulated_by(task: Task, checkpoint: Path | None) -> tuple[GreyBoxModel, DataSet, str]:
