@@ -8,6 +8,7 @@ from functools import partial
 
 from greybox_torch.data import DataSet
 from greybox_torch.deadline import Deadline, TimeIsUp, until
+from greybox_torch.diagnosis.confirm.estimated_from_all import explained_without
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.part_of_the_last import promote_part
@@ -174,11 +175,12 @@ def find_what_is_slow(
             longer = partial(make_study, budget=budget, more_is_missing=True)
             last = find_with_more(find(first.dataset, model, longer, clock, end), model, longer, clock, end, given)
             found = stands(last.study, *((f.state, f.gains, f.judged) for f in (told, last)))
+            needless = explained_without(last.study, last.judged) if found else ""
     except (TimeIsUp, KeyboardInterrupt):
         return replace(first, complete=False, others=None, cut=(*first.cut, LONGER))
     why = sentence(told.judged, told.state, first.searched, last.state)
-    if found:
+    if found and not needless:
         return replace(last, more=(*first.more, *last.more, why))
     if not last.complete:
         return replace(first, complete=False, cut=(LONGER,))
-    return replace(first, more=(*first.more, why))
+    return replace(first, more=(*first.more, why, *([needless] if needless else [])))
