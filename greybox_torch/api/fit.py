@@ -15,6 +15,7 @@ from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.fit import Estimation, fit_records
 from greybox_torch.estimate.free_run import FreeRun
+from greybox_torch.estimate.held_starts import held_starts
 from greybox_torch.estimate.identifiability import Unidentifiable, identifiability
 from greybox_torch.estimate.levenberg_marquardt import DEFAULT
 from greybox_torch.estimate.precision import settings_for
@@ -89,8 +90,9 @@ def fit(
     comparisons = _compared(data, given, found, simulator)
     asked = asked_where_poor(data, given, comparisons["refit"].scores, lambda: simulator, progress)
     question = None if asked is None else asked.question
+    held = held_starts(data, found.problem, found.mse, simulator)
     seconds = time.perf_counter() - began
-    return FitResult(data, found, comparisons, drawn, unidentifiable, precision, seconds, question)
+    return FitResult(data, found, comparisons, drawn, unidentifiable, precision, seconds, question, held)
 
 
 def _at_start(problem: Problem, simulator: Simulator) -> tuple[Unidentifiable, ...]:

@@ -18,12 +18,14 @@ from greybox_torch.api.fit_advice import begun_with, fit_advice, lost_in_one, lo
 from greybox_torch.api.fit_json import estimation_json, identifiability_json, profile_json, status
 from greybox_torch.api.fit_summary import beginnings, parameter_table, print_estimate, warnings
 from greybox_torch.api.free_runs import plot_simulated
+from greybox_torch.api.held_starts import held_json, told_held
 from greybox_torch.api.ran_away import ran_away
 from greybox_torch.api.scores import print_scores, score_table, scores_side_by_side
 from greybox_torch.checkpoint import Checkpoint, checkpoint_files
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, held_out_scores, mean_fit, of_moving_outputs
 from greybox_torch.estimate.fit import Estimation
+from greybox_torch.estimate.held_starts import HeldStarts
 from greybox_torch.estimate.identifiability import Unidentifiable
 from greybox_torch.estimate.problem import with_card
 from greybox_torch.estimate.profile import Profile
@@ -47,7 +49,8 @@ class FitResult(EstimatedModel):
     ``estimation`` says how it was obtained; ``comparisons`` are the free runs on all experiments with the values
     before ("start") and after ("refit"); ``profiles`` the profile likelihoods that were asked for, ``undetermined``
     what the data leave open as far as the start values told; ``seconds`` how long it took; ``question`` asks whether channels are
-    exchanged or of the other sign, where the fit is poor and would be far better with that.
+    exchanged or of the other sign, where the fit is poor and would be far better with that; ``held`` the start states that the model file
+    holds, where the fit would be far better with them estimated.
     """
 
     stage: ClassVar[str] = "refit"
@@ -61,6 +64,7 @@ class FitResult(EstimatedModel):
     precision: str
     seconds: float
     question: str | None = None
+    held: HeldStarts | None = None
 
     @cached_property
     def model(self) -> GreyBoxModel:
@@ -104,6 +108,7 @@ class FitResult(EstimatedModel):
             **({"ran_away": self._away} if self._away is not None else {}),
             **({"far_parameters": self._far} if self._far is not None else {}),
             **({"question": self.question} if self.question is not None else {}),
+            **({"held_starts": held_json(self.held)} if self.held is not None else {}),
             "dataset": self.data.name,
             "model": model_reference(self.estimation.problem.model),
             "held_out_by_default": self.data.held_out_by_default,
@@ -150,14 +155,15 @@ class FitResult(EstimatedModel):
 
     @property
     def _advice(self) -> list[str]:
-        """What the free runs, and parameters that ran away or ended far off, say about model and card: up to five sentences."""
+        """What the free runs, and parameters that ran away or ended far off, say about model and card: up to six sentences."""
         problem = self.estimation.problem
         away = self._away
         said = fit_advice(self._scores, begun_with(problem, self.data))
         asked = None if self.question is None else f"{self.question}."
         lost = lost_outputs(self._scores)
         alone = None if said or lost else lost_in_one(self._scores)
-        lines = (None if away is None else f"{away}.", self._far, said, lost, alone, asked)
+        held = None if self.held is None else told_held(self.held, self.estimation.problem)
+        lines = (None if away is None else f"{away}.", self._far, held, said, lost, alone, asked)
         return [line for line in lines if line is not None]
 
     @cached_property

@@ -9,14 +9,13 @@ from itertools import count
 import numpy as np
 
 from greybox_torch.estimate.beginnings import cost_of, fits_of, tolerable, well_begun
+from greybox_torch.estimate.by_methods import BETTER_BEGUN, METHODS, Method, by_methods
 from greybox_torch.estimate.free_run import FreeRun, simulate
 from greybox_torch.estimate.global_search import look_around
-from greybox_torch.estimate.levenberg_marquardt import Descending, Optimum, Settings, answered, descending
-from greybox_torch.estimate.logarithmic import descending_on_logarithms
+from greybox_torch.estimate.levenberg_marquardt import Optimum, Settings, answered
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.simulators import fine_enough
-from greybox_torch.estimate.termination import Termination
-from greybox_torch.estimate.window_fit import fit_windows
+from greybox_torch.estimate.through_windows import FAR_ABOVE, from_windows, through_windows
 from greybox_torch.simulation.simulator import Simulator
 
 POOR = 2.0
@@ -25,37 +24,17 @@ POOR = 2.0
 TRUSTED = 75.0
 """Fit in % below which start values are poor in any case."""
 
-CLOSE = 95.0
-"""Fit in % from which another valley is not looked for."""
+CLOSE, ARRIVED = 95.0, 99.9
+"""Fits in % from which another valley is not looked for, and from which windows are not asked whether there is one."""
 
 STARTS_A_PARAMETER, MOST_STARTS = 32, 256
 """How many start values are drawn where those given are poor."""
 
-WINDOW_SHARES = (1 / 64, 1 / 16)
-"""Window lengths, as shares of the longest record, that start values which do not simulate are led through."""
-
-PATIENCE = 60
-"""Iterations after which a descent that has not arrived is taken to creep."""
-
 AFTER_SEARCH = 20
 """Iterations, at most, of a descent from start values that were looked for: the search has made most of them, and what is left creeps."""
 
-CREEPING = 1e-6
-"""Relative change of the cost from which an iteration on logarithms leads on; what follows ends the descent."""
-
 FINER = 2
 """How often the steps of the simulation are refined after the parameters."""
-
-Method = Callable[..., Descending[None]]
-
-METHODS: tuple[Method, ...] = (descending, descending_on_logarithms, descending)
-"""How whole records are descended on, one after the other."""
-
-BETTER_BEGUN = METHODS[1:]
-"""From start values that were looked for."""
-
-Report = Callable[[int, float, float], None]
-"""Called with an iteration of a descent, the cost there, and the step."""
 
 Progress = Callable[[str, int, float], None]
 """Called with a stage's name, an iteration and the mean squared error there."""
@@ -88,6 +67,10 @@ class DescentOptions:
         """The simulator with as many sub-steps as ``problem`` needs at its values."""
         return fine_enough(self.simulator, problem)
 
+    def brief(self) -> DescentOptions:
+        """For a descent from start values that were looked for."""
+        return replace(self, settings=replace(self.settings, iterations=min(AFTER_SEARCH, self.settings.iterations)))
+
 
 def descend(problem: Problem, options: DescentOptions, starts: int | None) -> Descent | None:
     """The best optimum found from the start values of ``problem``; None where not even short windows simulate.
@@ -116,6 +99,8 @@ def or_elsewhere(
 ) -> Descent | None:
     """What was ``found`` from start values that simulate with ``fits``, or what many others lead to, where that is better and asked for."""
     simulator = options.fine_enough(problem)
+    if starts != 1:
+        found = _nearer_by_windows(problem, found, options)
     if starts is None:
         starts = 1 if found is not None and _trusted(fits, found) else _default_starts(problem, simulator)
     if starts > 1 and problem.free.any():
@@ -124,9 +109,7 @@ def or_elsewhere(
         )
         other = None
         if elsewhere is not None:
-            limited = replace(options.settings, iterations=min(AFTER_SEARCH, options.settings.iterations))
-            brief = replace(options, settings=limited)
-            other = _whole_records(elsewhere.problem, brief, 0, BETTER_BEGUN, elsewhere.substeps)
+            other = _whole_records(elsewhere.problem, options.brief(), 0, BETTER_BEGUN, elsewhere.substeps)
         found = _better(found, other)
     return found
 
@@ -138,10 +121,15 @@ def improved(found: Descent | None, begin: Problem, options: DescentOptions) -> 
 
 def _trusted(before: np.ndarray, found: Descent) -> bool:
     """Whether the start values lay so near the optimum that it is the one meant, or it is so good that there is no better one."""
-    there = found.run.at(found.optimum.point)
-    after = fits_of(there, simulate(there, found.run.simulator))
+    after = _fits(found)
     near = (before >= TRUSTED) & (100.0 - before <= POOR * (100.0 - after))
     return bool((near | (after > CLOSE)).all())
+
+
+def _fits(found: Descent) -> np.ndarray:
+    """Fit in % of every output of every experiment with what was found."""
+    there = found.run.at(found.optimum.point)
+    return fits_of(there, simulate(there, found.run.simulator))
 
 
 def _default_starts(problem: Problem, simulator: Simulator) -> int:
@@ -150,17 +138,23 @@ def _default_starts(problem: Problem, simulator: Simulator) -> int:
 
 
 def _by_windows(problem: Problem, options: DescentOptions, simulator: Simulator) -> tuple[Problem, int]:
-    """Better parameters by way of windows with free start states; each length is kept only if the one before simulates."""
-    evaluations, longest = 0, int(problem.records.lengths.max())
-    for share in WINDOW_SHARES:
-        found = fit_windows(problem, simulator, max(20, round(share * longest)))
-        if found is None:
-            continue
-        evaluations += found.evaluations
-        problem = problem.with_values(found.problem.values)
-        if options.progress is not None:
-            options.progress(f"windows of {found.windows.steps} samples", evaluations, found.mean_square)
+    """Better parameters by way of windows with free start states, and how many passes they took."""
+    evaluations = 0
+    for fit in through_windows(problem, simulator, options.progress):
+        problem, evaluations = problem.with_values(fit.problem.values), evaluations + fit.evaluations
     return problem, evaluations
+
+
+def _nearer_by_windows(problem: Problem, found: Descent | None, options: DescentOptions) -> Descent | None:
+    """What was ``found`` from the values of ``problem`` or, where windows leave far less, what those lead to if that is better."""
+    if found is None or not problem.free.any() or (_fits(found) > ARRIVED).all():
+        return found
+    best, brief = found, options.brief()
+    for fit in through_windows(problem, options.fine_enough(problem), options.progress):
+        if 2 * best.optimum.model.cost <= FAR_ABOVE**2 * fit.mean_square * problem.samples:
+            break
+        best = _better(best, _whole_records(from_windows(fit), brief, 0)) or best
+    return best
 
 
 def _whole_records(
@@ -196,7 +190,7 @@ def _whole_records(
 def _optimum(
     run: FreeRun, options: DescentOptions, before: int, methods: Sequence[Method], kept: str = "the best is kept"
 ) -> Descent | None:
-    """Descend by one method after the other, until the plain one has arrived; where it creeps, logarithms are for.
+    """The optimum near the start of ``run``, and the passes before it counted as well.
 
     Args:
         kept: what becomes of the descents before, where there are any.
@@ -207,35 +201,6 @@ def _optimum(
         report = lambda i, cost, _: progress(stage, i, 2 * cost / samples)  # noqa: E731
     found = answered(by_methods(run, options.settings, methods, report), run.quadratic, run.admissible)
     return None if found is None else Descent(run, found, before + found.evaluations)
-
-
-def by_methods(
-    run: FreeRun,
-    settings: Settings,
-    methods: Sequence[Method],
-    report: Report | None = None,
-) -> Descending[None]:
-    """The questions of a descent by one method after the other, see :func:`_optimum`; its optimum counts the passes of all."""
-    z, iterations, evaluations, optimum = run.start, 0, 0, None
-    for method in methods:
-        limited = replace(settings, iterations=min(PATIENCE, settings.iterations - iterations))
-        if method is descending_on_logarithms:
-            limited = replace(limited, tolerance=max(CREEPING, settings.tolerance))
-        if limited.iterations <= 0:
-            break
-        here = yield from method(z, *run.bounds, settings=limited, on_iteration=_counted_on(report, iterations))
-        if here is None:
-            return None
-        z, iterations, evaluations = here.point, iterations + here.iterations, evaluations + here.evaluations
-        optimum = replace(here, iterations=iterations, evaluations=evaluations)
-        if method is descending and here.termination is not Termination.iteration_limit:
-            break
-    return optimum
-
-
-def _counted_on(report: Report | None, before: int) -> Report | None:
-    """The next method's iterations, counted on from those ``before``: seen was a log that began anew every twenty."""
-    return report if report is None else lambda i, cost, step: report(before + i, cost, step)
 
 
 def _better(one: Descent | None, other: Descent | None) -> Descent | None:

@@ -71,7 +71,7 @@ def test_start_values_that_simulate_as_given_begin_there() -> None:
 
 
 def test_what_is_worse_than_the_start_values_is_given_up_for_where_these_lead() -> None:
-    astray, problem = begun_with(2.0, frequency=1.5), begun_with(2.0)
+    astray, problem = begun_with(2.0, frequency=0.3), begun_with(2.0)
     options = options_for(problem)
     own, cost = well_begun(problem, options.simulator)
     worse, best = descend(astray, options, 1), descend(problem, options, 1)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from greybox_torch.estimate import descent
+from greybox_torch.estimate import by_methods, descent
 from greybox_torch.estimate.descent import DescentOptions, descend
 from greybox_torch.estimate.fit import fit_records
 from greybox_torch.estimate.free_run import FreeRun
@@ -52,9 +52,16 @@ def oscillation(data_set: Any) -> Any:
 
 
 def test_one_descent_ends_in_the_valley_it_begins_in(oscillation: Any) -> None:
-    found = fit_records(oscillation, starts=1)
+    far = oscillation.with_values(np.array([0.3, 1.0]))  # from nearer ones windows lead to the right valley
+    found = fit_records(far, starts=1)
     assert found.mse > 0.3
     assert abs(found.problem.values[0] - 2.3) > 0.1
+
+
+@pytest.mark.parametrize("frequency", [0.8, 1.5, 4.5, 9.0])
+def test_windows_that_go_on_from_shorter_ones_lead_to_the_right_valley(oscillation: Any, frequency: float) -> None:
+    found = fit_records(oscillation.with_values(np.array([frequency, 1.0])), starts=1)
+    assert found.problem.values == pytest.approx(list(TRUTH.values()), rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", [0, 1])
@@ -90,7 +97,7 @@ def test_every_descent_is_told_by_its_number_and_counts_on(oscillation: Any) -> 
 
 
 def test_iterations_count_on_from_one_method_to_the_next(oscillation: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(descent, "PATIENCE", 1)
+    monkeypatch.setattr(by_methods, "PATIENCE", 1)
     told: list[int] = []
     fit_records(oscillation, starts=1, progress=lambda stage, k, _: told.append(k) if "whole" in stage else None)
     assert max(told) > 1 and told == list(range(1, len(told) + 1))

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from greybox_torch.diagnosis.beliefs import NO_BELIEFS, Beliefs
-from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.select.posterior import shares, told_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.start_states import starts_of
+from greybox_torch.estimate.through_windows import from_windows
 from greybox_torch.model import GreyBoxModel
 
 FEW, MOST = 3, 6

@@ -13,11 +13,12 @@ from greybox_torch.diagnosis.hypothesis.beside_curves import beside_curves, weig
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.steps_of_whole_records import in_steps_for_whole_records
 from greybox_torch.diagnosis.hypothesis.weights_of_outputs import weighed_by_what_is_left
-from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.hypothesis.whole_records import coloured, whole_runs
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
 from greybox_torch.estimate.free_run import FreeRun, descended
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.returned import returned
+from greybox_torch.estimate.through_windows import from_windows
 from greybox_torch.estimate.uncertainty import Uncertainty, of_information, uncertainty
 from greybox_torch.estimate.window_information import uncertainty_over_windows
 from greybox_torch.simulation.records import Records

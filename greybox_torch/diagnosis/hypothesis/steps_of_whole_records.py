@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.settings import DiagnosisSettings
 from greybox_torch.estimate.free_run import simulate
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.estimate.simulators import fine_enough
+from greybox_torch.estimate.through_windows import from_windows
 from greybox_torch.mechanisms.augmented_model import AugmentedModel
 from greybox_torch.simulation.simulator import Simulator
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
-
-import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis, without_free
 from greybox_torch.estimate.coloured_run import Coloured, fit_coloured
 from greybox_torch.estimate.free_run import FreeRun
 from greybox_torch.estimate.problem import Problem
-from greybox_torch.estimate.window_fit import WindowFit
 from greybox_torch.simulation.side_by_side import side_by_side
 
 
@@ -28,16 +24,6 @@ def whole_runs(hypothesis: Hypothesis, problems: Sequence[Problem]) -> list[Free
         own = [n for n in hypothesis.problem.free_names if n not in shrunk]
         simulator = simulator.for_model(hypothesis.model, own)
     return [FreeRun(without_free(p, shrunk), simulator) for p in problems]
-
-
-def from_windows(fit: WindowFit) -> Problem:
-    """The problem with the start states of the windows that begin an experiment, where those are free."""
-    problem = fit.problem
-    initial = problem.initial.copy()
-    index = np.searchsorted(fit.windows.start, problem.records.first)
-    free = problem.initial_free
-    initial[:, free] = fit.starts[index][:, free]
-    return replace(problem, initial=initial)
 
 
 def coloured(runs: Sequence[FreeRun]) -> tuple[FreeRun, Coloured] | None:

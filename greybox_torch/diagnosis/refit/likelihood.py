@@ -15,9 +15,10 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
 from greybox_torch.diagnosis.hypothesis.significance import white_samples
-from greybox_torch.diagnosis.hypothesis.whole_records import coloured, from_windows, whole_runs
+from greybox_torch.diagnosis.hypothesis.whole_records import coloured, whole_runs
 from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.settings import DiagnosisSettings
+from greybox_torch.estimate.through_windows import from_windows
 
 
 def cost_of(fitted: Hypothesis) -> float:

@@ -8,11 +8,11 @@ import numpy as np
 
 from greybox_torch.diagnosis.hypothesis.above_noise import times_noise
 from greybox_torch.diagnosis.hypothesis.fit import Hypothesis
-from greybox_torch.diagnosis.hypothesis.whole_records import from_windows
 from greybox_torch.diagnosis.refit.refitted import fit
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
 from greybox_torch.estimate.simulators import fine_enough
+from greybox_torch.estimate.through_windows import from_windows
 from greybox_torch.mechanisms.attachment import Attachment
 
 

@@ -10,12 +10,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from greybox_torch.estimate.beginnings import fits_of, tolerable
+from greybox_torch.estimate.by_methods import METHODS, by_methods
 from greybox_torch.estimate.descent import (
     FINER,
-    METHODS,
     Descent,
     DescentOptions,
-    by_methods,
     descend,
     improved,
     no_worse,
