@@ -150,7 +150,7 @@ def _nearer_by_windows(problem: Problem, found: Descent | None, options: Descent
     if found is None or not problem.free.any() or (_fits(found) > ARRIVED).all():
         return found
     best, brief = found, options.brief()
-    for fit in through_windows(problem, options.fine_enough(problem), options.progress):
+    for fit in through_windows(problem, options.fine_enough(problem)):
         if 2 * best.optimum.model.cost <= FAR_ABOVE**2 * fit.mean_square * problem.samples:
             break
         best = _better(best, _whole_records(from_windows(fit), brief, 0)) or best

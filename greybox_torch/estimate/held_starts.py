@@ -55,7 +55,7 @@ def _lefts(freed: Problem, mean_square: float, simulator: Simulator) -> Iterator
     """Mean squared errors of whole records from the values of ``freed`` and from those that its windows lead to."""
     simulator = fine_enough(simulator, freed)
     begun = [freed]
-    for fit in through_windows(freed, simulator, None):
+    for fit in through_windows(freed, simulator):
         if mean_square <= FAR_ABOVE**2 * fit.mean_square:
             return
         begun.append(from_windows(fit))

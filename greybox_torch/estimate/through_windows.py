@@ -29,7 +29,7 @@ Told = Callable[[str, int, float], None]
 """Called with a stage's name, how many passes it took, and the mean squared error there."""
 
 
-def through_windows(problem: Problem, simulator: Simulator, told: Told | None) -> Iterator[WindowFit]:
+def through_windows(problem: Problem, simulator: Simulator, told: Told | None = None) -> Iterator[WindowFit]:
     """Fits over windows, each begun with the values and start states of the one before; those that simulate."""
     longest = int(problem.records.lengths.max())
     shorter, passes = None, 0
