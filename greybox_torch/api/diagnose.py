@@ -20,7 +20,7 @@ from greybox_torch.diagnosis import pipeline
 from greybox_torch.diagnosis.beliefs import beliefs_from_mapping
 from greybox_torch.diagnosis.progress import Progress
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget, settings_from_mapping
-from greybox_torch.diagnosis.slip_first import with_question
+from greybox_torch.diagnosis.slip_first import looks_like_a_slip, ports_of, with_question
 from greybox_torch.diagnosis.stopping import or_else
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.problem import make_problem
@@ -31,10 +31,6 @@ from greybox_torch.simulation.simulator import SimulationOptions, Simulator
 
 TO_ASK, TO_ASK_SHARE = 3.0, 0.05
 """Seconds, and share of a time limit, that the question whether channels are exchanged may take beyond it: the larger of the two."""
-
-
-LIKE_A_SLIP = ("unknown", "input_gain", "sensor_gain")
-"""What a channel that is exchanged, turned or of another scale looks like, at its actuator or sensor."""
 
 
 @names_checked
@@ -125,7 +121,7 @@ def _with_question(
     effect at its actuator (0.97, validation 98 %).
     """
     began, verdict = time.perf_counter(), found.verdict
-    as_a_slip = any(e.mechanism in LIKE_A_SLIP and e.port.startswith(("actuator", "sensor")) for e in verdict.effects)
+    as_a_slip = any(looks_like_a_slip(e) for e in verdict.effects)
     good_so = bool(verdict.effects) and not as_a_slip and not poor(verdict.scores["augmented"])
     if not poor(verdict.scores["refit"]) or (good_so and not _may_make_up(verdict)):
         return found
@@ -138,7 +134,9 @@ def _with_question(
             return asked_where_poor(data, model, verdict.scores["refit"], simulator, progress)
 
     slip, _ = or_else(asked, lambda: None)
-    told = verdict if slip is None else with_question(verdict, slip.question, slip.reaches, slip.lead)
+    told = verdict
+    if slip is not None:
+        told = with_question(verdict, slip.question, slip.reaches, slip.lead, ports_of(model, slip.channels))
     if good_so and not told.question_first:  # beside a good answer only what is far better is worth a question
         told = verdict
     return replace(found, verdict=replace(told, seconds=verdict.seconds + time.perf_counter() - began))

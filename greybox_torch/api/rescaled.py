@@ -84,7 +84,7 @@ def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also
         f"{lead}, a short refit reaches a mean fit of {100.0 - rest:.3g} % on {judging(data)}{as_it_is}. "
         "If that is so, mend the scale, unit or file_unit on the card; if not, disregard this"
     )
-    return Asked(question, 100.0 - rest, lead)
+    return Asked(question, 100.0 - rest, lead, frozenset(change.read))
 
 
 def of_units(model: GreyBoxModel) -> Iterator[Change]:

@@ -67,11 +67,13 @@ AS_IT_IS = Change({}, "")
 class Asked:
     """A ``question`` to the user, without its full stop, and the mean fit in % that a short refit ``reaches`` on the validation experiments
     with the channels as it has them. ``lead``: what the question begins with, up to what was changed, which a headline goes on from.
+    ``channels``: those that it is about.
     """
 
     question: str
     reaches: float
     lead: str
+    channels: frozenset[str] = frozenset()
 
 
 def beginnings(data: DataSet) -> DataSet | None:
@@ -157,8 +159,8 @@ def asked_of(
     if found is None:
         return None
     left, lefts = found
-    asked = [change.question for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * min(lefts)]
-    question = ", or ".join(asked)
+    asked = [change for change, one in zip(tried, lefts, strict=True) if one <= AS_GOOD * min(lefts)]
+    question = ", or ".join(change.question for change in asked)
     as_it_is = f" ({digits(100.0 - left, 3)} % as it is)" if np.isfinite(left) else ""
     reaches = 100.0 - min(lefts)
     lead = f"{question[0].upper()}{question[1:]}? {so}"
@@ -166,7 +168,7 @@ def asked_of(
         f"{lead}, a short refit reaches a mean fit of {reaches:.3g} % on "
         f"{judging(data)}{as_it_is}. If so, mend {mend}; if not, disregard this"
     )
-    return Asked(told, reaches, lead)
+    return Asked(told, reaches, lead, frozenset(name for change in asked for name in change.read))
 
 
 def judging(data: DataSet) -> str:

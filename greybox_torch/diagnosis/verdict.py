@@ -122,7 +122,7 @@ class Verdict:
         found = ", and ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
         start = "The mismatch is" if all(e.one_of is None for e in self.effects) else "The mismatch:"
         if self.question_first:
-            start = f"{self.question_first}, a short refit leaves far less than what was found with the card as it is:"
+            start = f"{self.question_first}:"
         so_far = "" if self.complete else "; so far, as the search was stopped"
         return f"{start} {found}{self._gain()}{so_far}."
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -16,6 +18,7 @@ from greybox_torch.diagnosis.verdict import Left, Verdict
 from greybox_torch.estimate.comparison import Score
 
 module = import_module("greybox_torch.api.diagnose")
+MODEL: Any = SimpleNamespace(all_ports=())
 DRY = Effect("belt", "coulomb", 0.97, ("speed",), "", {}, 0.5, (), None, size=0.85)
 MASS = Estimate("m", "kg", 8.0, (9.0, 0.1), (0.1, 0.1), (False, True))
 BEFORE_ALONE, ZERO = replace(MASS, at_bound=(True, False)), replace(MASS, augmented=(0.0, 0.1))
@@ -32,7 +35,7 @@ def asked(monkeypatch: pytest.MonkeyPatch, reaches: float, fit: float, mass: Est
     verdict = Verdict("axis", "Axis", 0, 1.0, 0.97, (DRY,), scores, (), {}, ())
     verdict = replace(verdict, parameters=(mass,), left=Left(0.1, times, ""))
     found = Diagnosis(verdict, None, {}, {}, [])  # pyright: ignore
-    told = module._with_question(found, None, None, "cpu", print, Deadline.after(None)).verdict
+    told = module._with_question(found, None, MODEL, "cpu", print, Deadline.after(None)).verdict
     return len(calls), told.question or ""
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from greybox_torch.diagnosis.effect import Effect
 from greybox_torch.diagnosis.one_of import Alternative, OneOf
-from greybox_torch.diagnosis.slip_first import with_question
+from greybox_torch.diagnosis.slip_first import ports_of, with_question
 from greybox_torch.diagnosis.verdict import Verdict
 from greybox_torch.estimate.comparison import Score
 
@@ -87,3 +87,38 @@ def test_beside_nothing_found_it_is_asked_alone() -> None:
     told = with_question(replace(verdict(50.0), unexplained=20.0), ASKED, 99.1, LEAD)
     assert told.question == ASKED and not told.question_first and told.confidence == 0.97
     assert not told.sentence.startswith("Is the sign")
+
+
+DRY = replace(CURVE, port="load", mechanism="coulomb_friction")
+BIAS = replace(CURVE, mechanism="input_bias")
+
+
+def test_a_slip_that_does_nearly_all_by_itself_leads_before_an_effect_at_its_channel() -> None:
+    """Seen: a turned valve, told as an unknown effect at the actuator beside dry friction that is there (0.97 each, 98.3 %); the sign alone
+    reached 94.5 % of -24 %."""
+    told = with_question(verdict(98.3, CURVE, DRY, before=-24.0), ASKED, 94.5, LEAD, {"actuator"})
+    assert told.sentence.startswith(
+        f"{LEAD}, a short refit reaches 94.5 % without an unknown effect at actuator; with the card as it is: an unknown effect at "
+        "actuator (probability 0.50), and Coulomb friction at load (probability 0.97)"
+    )
+    assert told.confidence == 0.5
+    assert "nearly all by itself" in told.effects[0].limited[0] and not told.effects[1].limited
+
+
+@pytest.mark.parametrize(
+    ("effect", "reaches", "ports"),
+    [
+        (CURVE, 87.0, {"actuator"}),  # leaves more than a tenth
+        (CURVE, 94.5, {"actuator.other"}),
+        (BIAS, 94.5, {"actuator"}),  # nothing that a slip looks like
+        (DRY, 94.5, {"actuator", "sensor"}),
+    ],
+)
+def test_elsewhere_the_findings_lead(effect: Effect, reaches: float, ports: set[str]) -> None:
+    told = with_question(verdict(98.3, effect, before=-24.0), ASKED, reaches, LEAD, ports)
+    assert not told.question_first and told.effects == (effect,) and told.question == ASKED
+
+
+def test_the_ports_of_channels_are_their_actuators_and_sensors(motor) -> None:
+    assert ports_of(motor, {"voltage", "speed"}) == {"actuator", "sensor"}
+    assert ports_of(motor, {"speed", "other"}) == {"sensor"}

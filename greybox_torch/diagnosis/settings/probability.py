@@ -108,6 +108,13 @@ class ProbabilitySettings:
         unit="share of what is left to a fit of 100 %",
         chosen_by="as a slip has to be beside the model as it stands to be asked about",
     )
+    left_by_a_slip: float = share(
+        0.1,
+        "A slip on the card leads the verdict, where an effect at its channel is told, if it alone leaves less to a validation fit of "
+        "100 % than this part of what the model as it stands leaves.",
+        unit="share of what is left to a fit of 100 %",
+        chosen_by="nine tenths, as a name has to go as far as a curve",
+    )
     least_alternative: float = share(
         0.005, "Probability from which a rival is listed.", unit="probability", chosen_by="legibility"
     )
