@@ -189,10 +189,17 @@ def _within_rates(found: DesignResult) -> Iterator[str]:
 
 def _deviations(found: DesignResult) -> Iterator[str]:
     """Why the deviation before the recording is not the one that a fit tells."""
-    if found.parameter is not None and found.memory > 1.5:
+    if found.parameter is None:
+        return
+    if found.memory > 1.5:
         yield (
             f"Both deviations are cautious: errors so far are correlated over up to {digits(found.memory)} samples, and so many count as "
             "one. The report's ± and greybox fit take the correlation as it is and tell less; compare before and after with each other."
+        )
+    else:
+        yield (
+            "Both deviations take errors for independent from sample to sample, and weigh each output by the size of its errors. The "
+            "report's ± and greybox fit weigh errors in other ways and may tell more or less; compare before and after with each other."
         )
 
 

@@ -36,11 +36,18 @@ class _Reader(ast.NodeVisitor):
         self.findings: list[Finding] = []
 
     def visit_Assign(self, node: ast.Assign) -> None:
+        for target in node.targets:
+            self._write_into(target, node)
         if self._is_signal(node.value):
             for target in node.targets:
-                self._write_into(target, node)
                 names = [n.id for n in ast.walk(target) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)]
                 self.signals.update(names)
+        self.generic_visit(node)
+
+    def visit_AugAssign(self, node: ast.AugAssign) -> None:
+        self._write_into(node.target, node)
+        if isinstance(node.target, ast.Name) and self._is_signal(node.value):
+            self.signals.add(node.target.id)
         self.generic_visit(node)
 
     def visit_If(self, node: ast.If) -> None:
@@ -98,8 +105,10 @@ class _Reader(ast.NodeVisitor):
         if self._is_signal(test):
             self._say(what, instead or "torch.where(condition, yes, no)", node)
 
-    def _write_into(self, target: ast.expr, node: ast.AST) -> None:
-        if isinstance(target, ast.Subscript):
+    def _write_into(self, target: ast.expr, node: ast.Assign | ast.AugAssign) -> None:
+        if isinstance(target, ast.Subscript) and (self._is_signal(node.value) or self._is_signal(target.value)):
+            if isinstance(target.slice, ast.Constant) and isinstance(target.slice.value, str):
+                return  # a dictionary is written into, not a signal
             self._say(
                 f"writes into `{ast.unparse(target.value)}` in place",
                 "torch.stack([…]) of the elements; a matrix is torch.stack([torch.stack([…], -1), …], -2)",

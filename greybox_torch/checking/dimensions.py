@@ -38,6 +38,9 @@ _NAMED = (
 )
 """How dimensions are shown where one of these has them."""
 
+_PLAIN = ("1", "-", "–")
+"""How the unit of plain numbers is written."""
+
 
 @dataclass(frozen=True)
 class Dimension:
@@ -69,8 +72,12 @@ class Dimension:
         return next((unit for unit in _NAMED if dimension_of(unit) == self), None)
 
     def __str__(self) -> str:
-        """The dimension as a unit of its own."""
-        if self._named is not None:
+        """The dimension as a unit of its own, of something that turns."""
+        return self.told(turning=True)
+
+    def told(self, *, turning: bool) -> str:
+        """The dimension as a unit: an angle has none, so that what is not ``turning`` is in 1/s where an angular speed is in rad/s."""
+        if self._named is not None and (turning or not self._named.startswith("rad")):
             return self._named
         above = " ".join(_term(name, power) for name, power in self.powers if power > 0)
         below = " ".join(_term(name, -power) for name, power in self.powers if power < 0)
@@ -87,6 +94,13 @@ def _term(name: str, power: Fraction) -> str:
     return unit if power == 1 else f"{unit}^{power}" if power.denominator == 1 else f"{unit}^({power})"
 
 
+def per_second(unit: str) -> str:
+    """How the unit of the rate of what is in ``unit`` is told; nothing where that has none."""
+    if unit.strip() in _PLAIN:
+        return "1/s"
+    return f"{unit} per second" if unit.strip() else ""
+
+
 def known_dimension(unit: str) -> Dimension | None:
     """The dimension of a unit as it is written; None where nothing is written, and for what is no unit, which is told elsewhere."""
     try:
@@ -99,6 +113,6 @@ def dimension_of(unit: str) -> Dimension | None:
     """The dimension of a unit as it is written; None where nothing is written. Raises ValueError for what is no unit."""
     if not unit.strip():
         return None
-    if unit.strip() in ("1", "-", "–"):
+    if unit.strip() in _PLAIN:
         return NONE
     return Dimension.of({name: Fraction(power).limit_denominator(12) for name, power in dimensionality(unit).items()})

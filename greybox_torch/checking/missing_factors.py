@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from greybox_torch.checking.dimensions import SECOND, Dimension, known_dimension
+from greybox_torch.checking.dimensions import SECOND, Dimension, known_dimension, per_second
 from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
@@ -107,9 +107,9 @@ def _of_pairs(walked: _Walked, source: Source) -> Iterator[Finding]:
 def _rates(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[_Root]:
     for state in model.states:
         dimension, line = known_dimension(state.unit), source.line_of(f'"{state.name}":')
-        per_second = None if dimension is None else dimension.times(SECOND, -1)
-        what, wanted = f"the rate of state '{state.name}'", f"{state.unit} per second"
-        yield _Root(what, traced.rates[state.name], wanted, per_second, unit_size(state.unit), line)
+        rate = None if dimension is None else dimension.times(SECOND, -1)
+        what, wanted = f"the rate of state '{state.name}'", per_second(state.unit)
+        yield _Root(what, traced.rates[state.name], wanted, rate, unit_size(state.unit), line)
 
 
 def _shows(model: GreyBoxModel, traced: Traced) -> Iterator[_Root]:
@@ -120,6 +120,8 @@ def _shows(model: GreyBoxModel, traced: Traced) -> Iterator[_Root]:
 
 def _of_roots(walked: _Walked, roots: Sequence[_Root], source: Source) -> Iterator[Finding]:
     for root in roots:
+        if walked.graph.value_of(root.node) is not None:  # a number fits any unit
+            continue
         known = walked.known[root.node]
         if known is not None and known == root.dimension and differ(walked.found[root.node], root.size):
             yield Finding(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping, Sequence
 
+from greybox_torch.checking.dimensions import per_second
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Method
 from greybox_torch.errors import did_you_mean
@@ -84,7 +85,7 @@ def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -
 
     Only a dictionary that is written in the return statement is looked at.
     """
-    kind, rate = ("state", "per second") if method.name == "derivative" else ("output", "")
+    kind, told = ("state", per_second) if method.name == "derivative" else ("output", str)
     for node in ast.walk(method.tree):
         if not (isinstance(node, ast.Return) and isinstance(node.value, ast.Dict)):
             continue
@@ -93,7 +94,7 @@ def left_out(method: Method, names: Sequence[str], unit_of: Mapping[str, str]) -
             continue
         for name in names:
             if name not in keys:
-                unit = f"{unit_of[name]} {rate}".strip()
+                unit = told(unit_of[name])
                 yield Finding(
                     "error",
                     "name",

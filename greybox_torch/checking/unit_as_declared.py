@@ -6,8 +6,9 @@ import re
 from collections import Counter
 from collections.abc import Callable
 
-from greybox_torch.checking.dimensions import Dimension, known_dimension
+from greybox_torch.checking.dimensions import Dimension, dimension_of, known_dimension
 from greybox_torch.codegen.expression import Graph
+from greybox_torch.data.angles import has_angle
 
 UnitOf = Callable[[str, int], str]
 """The declared unit of a leaf, by its kind and number."""
@@ -19,15 +20,25 @@ _TIMES = re.compile(r"[*·⋅]")
 _UNITS = re.compile(r"([^/()]+)(?:/(?:\(([^/()]+)\)|([^/()]+)))?")
 
 
+_TORQUE_AND_INERTIA = {dimension_of("N m"), dimension_of("kg m^2")}
+
+
 def as_declared(graph: Graph, unit_of: UnitOf, node: int, dimension: Dimension) -> str:
     """How the ``dimension`` of a node is told: by its name if it has one, of a product by the units of its factors, else in base units."""
     factors = None if dimension.has_name else _factors(graph, unit_of, node, 1)
     if not factors:
-        return str(dimension)
+        return dimension.told(turning=turns(graph, unit_of, node))
     above = " ".join(_powers(factors, 1))
     below = _powers(factors, -1)
     whole = (above or "1") + (f"/({' '.join(below)})" if len(below) > 1 else f"/{below[0]}" if below else "")
     return whole if known_dimension(whole) == dimension else str(dimension)
+
+
+def turns(graph: Graph, unit_of: UnitOf, node: int) -> bool:
+    """Whether a node is made of what turns: of an angle by its declared unit, of a torque or an inertia."""
+    leaves = (graph.nodes[i] for i in graph.needed([node]) if graph.nodes[i].operation == "leaf")
+    units = [unit_of(leaf.leaf, int(leaf.value)) for leaf in leaves]
+    return any(has_angle(unit) or known_dimension(unit) in _TORQUE_AND_INERTIA for unit in units)
 
 
 def _powers(factors: Counter[str], sign: int) -> list[str]:

@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from functools import partial
 
-from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of, known_dimension
+from greybox_torch.checking.dimensions import SECOND, WATT, Dimension, dimension_of, known_dimension, per_second
 from greybox_torch.checking.expression_text import Names, shown
 from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.checking.tracing import Traced
-from greybox_torch.checking.unit_as_declared import as_declared
-from greybox_torch.checking.unit_walk import Known, dimensions
+from greybox_torch.checking.unit_as_declared import as_declared, turns
+from greybox_torch.checking.unit_walk import InUnits, Known, dimensions
+from greybox_torch.codegen.expression import Graph
+from greybox_torch.data.angles import has_angle
 from greybox_torch.data.units import factor_in
 from greybox_torch.model import Body, Coupling, GreyBoxModel
 
@@ -19,6 +21,9 @@ REMEDY = "what makes units fit: a number in the equation that has a unit is a pa
 
 _FLOWS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
 """Angular and linear speed, volume flow, current: with their efforts (torque, force, pressure, voltage) they make power."""
+
+_PLACE_AND_CHANGE = {"body": ("position", "speed"), "coupling": ("deflection", "rate")}
+"""By a port's kind the signals of which one is the rate of the other."""
 
 
 def unreadable_units(model: GreyBoxModel, source: Source) -> Iterator[Finding]:
@@ -54,7 +59,8 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
         graph.leaf(kind, i): known_dimension(q.unit) for kind, of in _declared(model).items() for i, q in enumerate(of)
     }
     text = lambda node: shown(graph, node, names)  # noqa: E731
-    in_units = partial(as_declared, graph, lambda kind, i: units[names.of(kind, i)])
+    unit_of = lambda kind, i: units[names.of(kind, i)]  # noqa: E731
+    in_units = partial(as_declared, graph, unit_of)
     signals = dimensions(graph, traced.signals.values(), leaves, text, found.setdefault, in_units)
     of_signal = {key: signals[node] for key, node in traced.signals.items()}
     for i, port in enumerate(model.ports):
@@ -69,46 +75,44 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
             or f"{REMEDY}; the units are {_used(traced, node, names, units)}"
         )
         yield Finding("warning", "units", what, write, source.file, graph.lines.get(node))
-    for name, node in traced.rates.items():
-        unit = next(s.unit for s in model.states if s.name == name)
-        wanted = known_dimension(unit)
-        yield from _differs(
-            f"the rate of state '{name}'",
-            known[node],
-            None if wanted is None else wanted.times(SECOND, -1),
-            f"a rate in {unit} per second",
-            source,
-            graph.lines.get(node),
-        )
-    for name, node in traced.outputs.items():
-        unit = next(o.unit for o in model.outputs if o.name == name)
-        yield from _differs(
-            f"output '{name}'", known[node], known_dimension(unit), f"a value in {unit}", source, graph.lines.get(node)
-        )
-    yield from _ports(model, of_signal, source)
-
-
-def _ports(
-    model: GreyBoxModel, of_signal: dict[tuple[str, str], Dimension | None], source: Source
-) -> Iterator[Finding]:
-    pairs = {"body": ("position", "speed"), "coupling": ("deflection", "rate")}
+    differs = partial(_differs, graph, known | signals, in_units, source)
+    for state in model.states:
+        of, node = known_dimension(state.unit), traced.rates[state.name]
+        wanted = None if of is None else of.times(SECOND, -1)
+        what, write = f"the rate of state '{state.name}'", f"a rate in {per_second(state.unit)}"
+        yield from differs(what, node, wanted, has_angle(state.unit), write, graph.lines.get(node))
+    for output in model.outputs:
+        of, node = known_dimension(output.unit), traced.outputs[output.name]
+        what, write = f"output '{output.name}'", f"a value in {output.unit}"
+        yield from differs(what, node, of, has_angle(output.unit), write, graph.lines.get(node))
     for port in model.ports:
-        place, change = pairs.get(port.kind, ("", ""))
-        own, rate = of_signal.get((port.name, place)), of_signal.get((port.name, change))
+        place, change = _PLACE_AND_CHANGE.get(port.kind, ("", ""))
+        own = of_signal.get((port.name, place))
         if own is None:
             continue
-        wanted = own.times(SECOND, -1)
-        yield from _differs(
-            f"port '{port.name}', {change}", rate, wanted, f"the rate of its {place}, in {wanted}", source,
-            source.line_of(f'"{port.name}"'),
-        )  # fmt: skip
+        wanted, turning = own.times(SECOND, -1), turns(graph, unit_of, traced.signals[port.name, place])
+        what, write = f"port '{port.name}', {change}", f"the rate of its {place}, in {wanted.told(turning=turning)}"
+        line = source.line_of(f'"{port.name}"')
+        yield from differs(what, traced.signals[port.name, change], wanted, turning, write, line)
 
 
 def _differs(
-    what: str, found: Dimension | None, wanted: Dimension | None, write: str, source: Source, line: int | None
+    graph: Graph,
+    known: Known,
+    in_units: InUnits,
+    source: Source,
+    what: str,
+    node: int,
+    wanted: Dimension | None,
+    turning: bool,
+    write: str,
+    line: int | None,
 ) -> Iterator[Finding]:
-    if found is not None and wanted is not None and found != wanted:
-        yield Finding("warning", "units", f"{what} is in {found}, expected {wanted}", write, source.file, line)
+    found = known[node]
+    if found is None or wanted is None or found == wanted or graph.value_of(node) is not None:  # a number fits any unit
+        return
+    told = f"{what} is in {in_units(node, found)}, expected {wanted.told(turning=turning)}"
+    yield Finding("warning", "units", told, write, source.file, line)
 
 
 def _declared(model: GreyBoxModel) -> dict[str, list]:

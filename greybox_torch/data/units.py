@@ -7,6 +7,7 @@ import re
 from functools import cache
 from typing import Any
 
+from greybox_torch.data.angles import has_angle
 from greybox_torch.data.unit_letters import in_small_letters
 from greybox_torch.errors import UserError, did_you_mean
 
@@ -17,7 +18,6 @@ _ONE = re.compile(r"1(\.0*)?")
 _TURNS = re.compile(r"(1(?:\.0*)?|U|r|tr|rev)\s*/\s*min|min\s*\^?\s*(-1|⁻¹)")
 """Turns per minute, as data loggers write them; beside angles and turns, for a rate of anything else may be 1/min."""
 _NAMED_TURNS = re.compile(r"^\W*(?:U|r|tr|rev)\s*/\s*(min|s)\b\W*(?=$|/)")
-_ANGLE = re.compile(r"\b(rad|deg|degrees?|rev|revolutions?|turns?|cycles?|mrad|rps)\b|rpm\b")
 _RATE = " / s"
 _WRITTEN = {"°C": "degC", "°F": "degF", "°": "deg", "·": "*", "²": "^2", "³": "^3", "μ": "µ"}
 _POWER = re.compile(r"(?<=[A-Za-zµ])(-?[1-4])(?![\w.])")
@@ -145,7 +145,7 @@ def slip(found: str, given: str) -> float | None:
 
     NaN where nobody can tell it, see TurnOrRadian. None for the plain number that a file may say of an angle.
     """
-    if found == "1" and _ANGLE.search(_spelt(given)):
+    if found == "1" and has_angle(_spelt(given)):
         return None
     try:
         factor, offset = conversion(found, given, "")
@@ -205,7 +205,7 @@ def _as_meant(unit: str, other: str) -> str:
     if plain in _GRAVITY and _dimension(other) == _dimension("m/s^2"):
         return "mg0" if plain == "mg" else "g0"
     plain = unit.removesuffix(_RATE)
-    return "rpm" + unit[len(plain) :] if per_minute(plain) and _ANGLE.search(_spelt(other)) else unit
+    return "rpm" + unit[len(plain) :] if per_minute(plain) and has_angle(_spelt(other)) else unit
 
 
 def _dimension(unit: str) -> dict[str, float] | None:

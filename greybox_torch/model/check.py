@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
@@ -24,7 +25,8 @@ NEEDS_A_VALUE = (
     "the model's equations need the value of a signal or parameter (a Python `if`, `float()`, `.item()` or a function of `math` on a "
     "tensor); write torch.where(condition, yes, no) and functions of torch instead, so that all samples can be computed side by side"
 )
-
+_ADVICE_OF_TORCH = re.compile(r"\s*Use `?tensor\.(item|detach|cpu|numpy)\b.*", re.DOTALL)
+"""A sentence to the end: it takes the value of a signal, which equations cannot."""
 
 BATCHES = ((3,), (2, 4))
 """Samples side by side; windows and directions are two dimensions of a batch."""
@@ -196,7 +198,8 @@ def _what_happened(model: GreyBoxModel, error: Exception, outside: bool) -> str:
     if outside and isinstance(error, TypeError) and "positional argument" in str(error):
         name, arguments = ("output", "x, u, p") if ".output()" in str(error) else ("derivative", "x, u, p, port")
         hint = f"; expected def {name}(self, {arguments})"
-    said = str(error).rstrip(".") if hint else str(error)
+    said = _ADVICE_OF_TORCH.sub("", str(error))
+    said = said.rstrip(".") if hint else said
     return f"the equations of {model.title} raised {type(error).__name__}: {said}{hint}"
 
 

@@ -1,4 +1,5 @@
-"""What to write where equations use a name that is not there: one of torch, of the model itself, or of a module that is not imported."""
+"""What to write where equations use a name that is not there (one of torch, of the model itself, or of a module that is not imported), or
+an element of what is one number."""
 
 from __future__ import annotations
 
@@ -26,6 +27,8 @@ def advice_for(model: GreyBoxModel, error: Exception) -> str:
         return f"; expected a module that is installed here; or {_OF_TORCH}"
     if isinstance(error, AttributeError) and (missing := _ATTRIBUTE.search(str(error))):
         return f"; expected a function of torch{did_you_mean(missing[1], dir(torch))}"
+    if "0-dim tensor" in str(error):
+        return "; expected a signal as it is, without an index: it is one number for each sample"
     if "dtype" in str(error):
         return not_double(model)
     return f"; expected {_OF_TORCH}" if "numpy" in str(error) else ""

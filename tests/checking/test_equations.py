@@ -92,6 +92,26 @@ def test_a_name_that_is_not_there_is_told_with_what_to_write(
     assert finding.line and write in finding.write
 
 
+@pytest.mark.parametrize(
+    ("before", "rate", "found", "line"),
+    [
+        ("w = x.speed * 1.0; w[0] = 1.0", "p.b * w", "writes into `w` in place", "w[0]"),
+        ("w = x.speed * 1.0; w[0] += 1.0", "p.b * w", "writes into `w` in place", "w[0]"),
+        ("w = {}; w['a'] = x.speed", "p.b * w['a'][0]", "IndexError: invalid index of a 0-dim tensor", "w['a'][0]"),
+        ("", "p.b * x.speed[..., 0, 0, 0]", "IndexError", "x.speed[..."),
+    ],
+)
+def test_an_element_of_a_signal_is_told_without_torchs_advice_to_take_its_value(
+    tmp_path: Path, machines: Path, before: str, rate: str, found: str, line: str
+) -> None:
+    """Seen: "Use `tensor.item()` in Python or `tensor.item<T>()` in C++", which equations cannot, of `w[0] = 1.0`."""
+    text = motor(tmp_path, machines, before, rate)
+    (finding,) = examine(model_class(f"{tmp_path / 'motor.py'}:Motor")).findings
+    assert found in finding.found and "item" not in finding.found
+    assert ("torch.stack" if "writes" in found else "as it is, without an index" if before else "") in finding.write
+    assert finding.line == next(k for k, one in enumerate(text.splitlines(), 1) if line in one)
+
+
 def test_random_numbers_are_refused_where_the_model_is_loaded(tmp_path: Path, machines: Path) -> None:
     motor(tmp_path, machines, "", "p.b * torch.rand(1) * x.speed")
     with pytest.raises(

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from greybox_torch.checking.examine import examine
+from greybox_torch.data.angles import has_angle
 from greybox_torch.systems import model_class
 
 HOOP = """
@@ -72,3 +73,50 @@ def test_a_product_with_a_number_is_told_so_too_and_not_as_an_equation_that_is_d
     (finding,) = [f for f in examine(model_class(f"{tmp_path / 'hoop.py'}:Hoop")).findings if "`port.hoop`" in f.found]
     assert "`p.n * p.k * u.u`, in N m A/V, and `port.hoop`, in N m" in finding.found
     assert "divided by the parameter" not in finding.write and "p.k [N m/V]" in finding.write
+
+
+LAG = HOOP.replace("p.k * u.u - p.b * x.speed + port.hoop", "RATE").replace(
+    'Parameter("k", 8.3, unit="V/s")', 'Parameter("tau", 0.2, unit="s")'
+)
+
+
+@pytest.mark.parametrize(
+    ("unit", "rate", "told"),
+    [
+        ("1", "u.u - x.speed", "is in 1, expected 1/s\nwrite: a rate in 1/s"),
+        ("-", "(u.u - x.speed) / p.tau", ""),
+        ("rad", "u.u - x.speed", "is in 1, expected rad/s\nwrite: a rate in rad per second"),
+        ("m", "u.u / p.tau", "is in 1/s, expected m/s\nwrite: a rate in m per second"),
+        ("m", "u.u / p.tau * torch.cos(x.speed / x.speed)", "is in 1/s, expected m/s\nwrite: a rate in m per second"),
+        ("A", "x.speed * p.tau", "is in A s, expected A/s\nwrite: a rate in A per second"),
+        ("1", "0.0", ""),
+        ("V", "2.5", ""),
+    ],
+)
+def test_the_rate_of_a_plain_number_is_in_1_s_and_a_number_is_in_any_unit(
+    tmp_path: Path, unit: str, rate: str, told: str
+) -> None:
+    """Seen: "the rate of state 'spool' is in 1, expected rad/s", of a state of unit 1 whose rate is 0.0."""
+    (tmp_path / "lag.py").write_text("import torch\n" + LAG.replace('"V"', f'"{unit}"').replace("RATE", rate))
+    findings = examine(model_class(f"{tmp_path / 'lag.py'}:Hoop")).findings
+    found = [f"{f.found}\nwrite: {f.write}" for f in findings if f.found.startswith("the rate of")]
+    assert found == ([f"the rate of state 'speed' {told}"] if told else [])
+
+
+@pytest.mark.parametrize(("unit", "told"), [("1", ", in 1/s"), ("", ""), ("m", ", in m per second")])
+def test_a_rate_that_is_left_out_is_told_with_its_unit(tmp_path: Path, unit: str, told: str) -> None:
+    (tmp_path / "lag.py").write_text(LAG.replace('"V"', f'"{unit}"').replace('"speed": RATE', '"other": 0.0'))
+    (write,) = [
+        f.write
+        for f in examine(model_class(f"{tmp_path / 'lag.py'}:Hoop")).findings
+        if f.found.endswith("does not return it")
+    ]
+    assert write == f'"speed": … in what derivative() returns{told}'
+
+
+@pytest.mark.parametrize(
+    ("made", "turning"),
+    [("rad/s", True), ("°/s", True), ("rpm", True), ("N m s/rad", True), ("1/s", False), ("Hz", False), ("°C", False)],
+)
+def test_units_with_an_angle(made: str, turning: bool) -> None:
+    assert has_angle(made) == turning

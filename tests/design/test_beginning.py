@@ -174,3 +174,14 @@ def test_reversals_are_told_as_the_triangle_wave_that_they_are(undecided) -> Non
     found = gt.design(undecided, precision="J", seconds=0.5)
     turning = replace(found, excitations=tuple(replace(e, kind="reversals") for e in found.excitations))
     assert "s of a triangle wave are expected to" in turning.sentence and turning.excitations[0].kind == "reversals"
+
+
+@pytest.mark.parametrize(("memory", "told"), [(1.0, "take errors for independent"), (40.0, "over up to 40 samples")])
+def test_why_a_deviation_is_not_the_reports_is_told_whatever_the_errors_are(
+    undecided, memory: float, told: str
+) -> None:
+    """Seen: "from 2.2 to 1.4 N s/m" beside ± 1.65 in the report, without a word, as errors were white."""
+    found = replace(gt.design(undecided, precision="J", seconds=0.5), memory=memory)
+    (note,) = [one for one in found.notes if one.startswith("Both deviations")]
+    assert told in note and "The report's ± and greybox fit" in note
+    assert not any(one.startswith("Both deviations") for one in replace(found, parameter=None).notes)

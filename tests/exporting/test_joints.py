@@ -168,7 +168,7 @@ def test_what_cannot_be_said_is_told(machines: Path, tmp_path: Path) -> None:
     ):
         made: Any = gt.export(model, to=to, name="effects")
         assert [row["effect"] for row in made.rows] == ["rotor.torque_ripple", "rotor.stribeck_friction"]
-        assert "F_s = 0.3" in made.rows[1]["why"]
+        assert "F_s = 0.3" in made.rows[1]["why"] and "frictionloss" not in made.rows[1]["why"]
         assert "rotor.torque_ripple: " in str(made)
         (file,) = made.save(tmp_path)
         root = ElementTree.parse(file).getroot()
@@ -189,6 +189,7 @@ def test_the_models_own_values_are_told_as_those_beside_the_effects(
     text = str(gt.export(rotor(machines, {("rotor", "coulomb_friction"): {"F_c": 0.1}}), to=to))
     assert "Beside these effects, the model's own parameters are J = 0.02 kg m^2" in text
     assert "without effects" not in text
+    assert ("frictionloss" in text) == (to == "mjcf"), "seen: MJCF's word in what URDF has no word for"
 
 
 def test_play_whose_contact_grows_stiffer_is_told_not_to(machines: Path) -> None:

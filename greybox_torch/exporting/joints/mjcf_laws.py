@@ -32,7 +32,7 @@ def coulomb(at: Place) -> Said:
 
 
 def stribeck(at: Place) -> Said:
-    peak = f"the extra level F_s = {at.values['F_s']:.6g} below v_s = {at.values['v_s']:.6g}: frictionloss is one level"
+    peak = f"the extra level F_s = {at.values['F_s']:.6g} below v_s = {at.values['v_s']:.6g}: a joint's dry friction is one level"
     return _joint(at, {"frictionloss": (at.values["F_c"],), "damping": (at.values["c"],)}, peak)
 
 
@@ -210,7 +210,9 @@ def _input(at: Place) -> str:
 
 
 def _sticks(at: Place) -> str:
-    return f"the speed v_0 = {at.values['v_0']:.6g} within which the force changes its sign: frictionloss sticks"
+    return (
+        f"the speed v_0 = {at.values['v_0']:.6g} within which the force changes its sign: a joint's dry friction sticks"
+    )
 
 
 def _unit_problem(at: Place) -> str:
