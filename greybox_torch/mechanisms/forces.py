@@ -53,6 +53,7 @@ class AdditionalMode(Mechanism):
     kinds = ("body",)
     needs = ("speed",)
     linear = True
+    lasting = ("stretch", "speed")  # a recording that is cut out of a motion begins with a mode that rings
     generalises = ("viscous_friction",)  # of a heavy mass by a soft spring the damper is seen
     essential = ("mass",)  # of one so heavy that the body does not move it the spring is seen, and no mode
     natural = ("zeta",)

@@ -58,7 +58,7 @@ class Mechanism:
     """Whether it reads ``rate@PORT``, which the forces of all other laws belong to."""
     kinematic: bool = False
     """Whether the law changes a coupling's deflection (:meth:`deflection`) instead of adding a force."""
-    lasting: ClassVar[tuple[str, ...]] = ()
+    lasting: tuple[str, ...] = ()
     """States of its memory that may be left from before a record: what each begins with is estimated."""
     fades: ClassVar[bool] = False
     """Whether the memory is gone after a few samples, so that a window may begin with any."""

@@ -53,6 +53,7 @@ class UnknownWithMemory(Mechanism):
         self.modes = modes
         self.knots = knots
         self.in_front = Unknown(signal, knots) if knots else None
+        self.lasting = ("z", "r") if modes == 2 and not knots else ("z",)
 
     def parameters(self, around: Surroundings) -> list[Parameter]:
         unit, step = around.per(self.signal), around.sample_time
