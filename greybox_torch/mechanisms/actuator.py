@@ -102,6 +102,7 @@ class InputGain(LinearLaw):
     kinds = ("actuator",)
     needs = ("input",)
     linear = True
+    scales = True
     nature = "another gain than recorded"
     explanation = "The input acts with another gain than recorded (current sensor, torque constant)."
     source = "M. Gautier, S. Briot, J. Dyn. Sys. Meas. Control 136, 2014"

@@ -13,6 +13,7 @@ from greybox_torch.mechanisms.local_signals import LocalSignals
 from greybox_torch.mechanisms.mechanism import SHARE, Surroundings
 from greybox_torch.model import Body, GreyBoxModel, Input, Parameter, State
 from greybox_torch.model.unit_of_rate import unit_of_integral
+from greybox_torch.model.unit_of_signal import unit_of_signal
 
 
 def added_states(local: LocalSignals) -> list[State]:
@@ -58,8 +59,6 @@ def started_at(parameter: Parameter, start: Mapping[str, float]) -> Parameter:
 
 
 def position_unit(model: GreyBoxModel, body: Body) -> str:
-    """The unit of a body's position: that of its position state, else that of its speed's integral over time."""
-    units = {s.name: s.unit for s in model.states}
-    if isinstance(body.position, str):
-        return units.get(body.position, "")
-    return unit_of_integral(units.get(body.speed, "")) if isinstance(body.speed, str) else ""
+    """The unit of a body's position, as its states tell; where they do not, that of its speed's integral over time."""
+    shown = "" if body.position is None else unit_of_signal(model, body.position)
+    return shown or unit_of_integral(unit_of_signal(model, body.speed))

@@ -137,8 +137,8 @@ def _whole_per_turn(order: float, around: Surroundings, once: bool) -> bool:
 
 
 def is_angle(around: Surroundings) -> bool:
-    """Whether positions are angles, as far as the model says."""
-    return around.units.get("position", "rad") == "rad"
+    """Whether positions are angles, as far as the model says: those of no known unit are."""
+    return around.units.get("position", "") in ("rad", "")
 
 
 def not_a_frequency_of_the_record(name: str, omega: float, around: Surroundings) -> str | None:

@@ -84,6 +84,8 @@ class Mechanism:
     """Parameters that the law did not have in models saved by an earlier version; they are zero there."""
     stands_for: tuple[str, ...] = ()
     """As a richer form: what a further effect at its port has to be named for this one law to be asked in the place of both."""
+    scales: ClassVar[bool] = False
+    """Whether it is a gain, with which every force that was found beside it becomes another one, too."""
     rubs: bool = False
     """Whether it is friction by the speed of its body alone: a body has one such friction, of which two laws are two parts."""
     springs: bool = False

@@ -120,6 +120,7 @@ class SensorGain(LinearLaw):
     kinds = ("sensor",)
     needs = ("output",)
     linear = True
+    scales = True
     nature = "another gain than recorded"
     explanation = "The output is recorded with another gain (scale factor)."
     source = "J. J. Craig, Introduction to Robotics, 3rd ed., 2005"

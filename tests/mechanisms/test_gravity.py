@@ -48,9 +48,11 @@ def test_a_chain_is_made_again_from_its_options() -> None:
     assert Gravity(**law.options()).links == ("first", "second")
 
 
-@pytest.mark.parametrize(("unit", "said"), [("rad", None), ("m", "position is in m")])
+@pytest.mark.parametrize(("unit", "said"), [("rad", None), ("", None), ("m", "position is in m")])
 def test_weight_goes_with_an_angle(unit: str, said: str | None) -> None:
-    """Seen: a constant force on a stage, told as gravity (0.77)."""
+    """Seen: a constant force on a stage, told as gravity (0.77); the weight of a platform, whose angle is a function of a state in degrees,
+    told as a curve (0.97).
+    """
     around = Surroundings({"position": Range(-0.2, 0.2, 0.1)}, {"position": unit}, "N", 1e-3)
     found = Gravity().degenerate(around, {"a": 0.1, "b": -2.0}, {})
     assert found is None if said is None else said in str(found)

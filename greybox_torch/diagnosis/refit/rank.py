@@ -43,15 +43,13 @@ def rank(
     budget = study.budget
     study.journal.offer(candidate.attachment.named for candidate in found)
     found = in_both_orders(study, current.effects, found)
-    frozen = frozenset(
-        p.name for p in current.model.declared_parameters if p.shrunk
-    )  # heights of a curve: many, and good already
+    frozen = frozenset(p.name for p in current.model.declared_parameters if p.shrunk)
     simulators = _compiled(study, current, found, frozen)
     at = window_lengths(study.problem, budget)
     middle = at[min(1, len(at) - 1)]
     steps = {length: cut(study.problem.records, length).steps for length in at}
     allowance = study.settings.trial_allowance
-    refit = partial(fit, study, frozen=frozen, rough=True)
+    refit = partial(fit, study, rough=True)
 
     def tried(
         candidate: Candidate, simulator: Simulator, starts: Sequence[Mapping[str, float]] = (), length: int = middle
@@ -61,7 +59,7 @@ def rank(
         effects = joined(current.effects, candidate)
         starts = starts or candidate.first_starts(budget.trial_starts)
         how = {"shorter": candidate.begun or current.fits[0], "limits": budget.trial_iterations}
-        return refit(effects, starts, at=[length], simulator=simulator, **how)
+        return refit(effects, starts, at=[length], simulator=simulator, frozen=_held(candidate, frozen), **how)
 
     def compared(trial: Hypothesis | None, length: int) -> list[Shown]:
         """How far a trial is from the hypothesis before it (negative: better), where it is not hopeless."""
@@ -98,6 +96,7 @@ def rank(
             before=before,
             limits=budget.window_iterations,
             simulator=simulator,
+            frozen=_held(candidate, frozen),
         )
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
 
@@ -215,12 +214,21 @@ def _pays(study: Study, ranked: RankedCandidate) -> bool:
     return improves and not ranked.unknown and sound(study, ranked)
 
 
+def _held(candidate: Candidate, heights: frozenset[str]) -> frozenset[str]:
+    """What keeps its value while a candidate is ranked: the heights of a curve, which are many, and good already but for a gain.
+
+    With another gain all forces are others. Seen: the gain of a wheel's torque beside a curve of the pivot, which without the curve's scale
+    was no rival of the gain of the wheel's sensor (0.97); they differ by one factor of all forces.
+    """
+    return frozenset() if candidate.attachment.mechanism.scales else heights
+
+
 def _compiled(study: Study, current: Hypothesis, found: Sequence[Candidate], frozen: frozenset[str]) -> list[Simulator]:
     """Simulators of the whole shortlist, compiled side by side."""
 
     def build(candidate: Candidate) -> Simulator:
         model = augmented(study.problem, joined(current.effects, candidate), study.surroundings)
-        free = without_free(problem_for(study.problem, model, {}), frozen).free_names
+        free = without_free(problem_for(study.problem, model, {}), _held(candidate, frozen)).free_names
         return current.simulator.for_model(model, free)
 
     return side_by_side(partial(build, candidate) for candidate in found)

@@ -50,6 +50,8 @@ def search(study: Study, state: SearchState, before: SearchState | None = None) 
         state = yield from drop_superfluous(study, state)
         if _same_laws(before, state):
             break  # what was chosen once more, and what joined it, was led back to what there was: so it would be again
+    else:
+        state = yield from _with_names_for_curves(study, state)
     before = state
     state = yield from with_memory(study, before)
     if state.current is not before.current:
@@ -77,12 +79,11 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
     """
     price = partial(priced_score, settings=study.settings)
     newest = state.newest
+    named = yield from _with_names_for_curves(study, state)
+    if named is not state:
+        return named
     for effect in state.effects:
         gone = beside_what_is_gone(state, effect)
-        if gone and isinstance(effect.mechanism, Unknown):
-            named = yield from _named_behind(study, state, effect)
-            if named is not state:
-                return named
         beside_others = gone and not effect.mechanism.free and not nothing_is_left(study, state)
         doubtful = effect.prefix != newest and (
             not beyond_doubt(study, state, effect)
@@ -98,6 +99,19 @@ def revise(study: Study, state: SearchState) -> Stage[SearchState]:
             yield other
             return (yield from drop_superfluous(study, other))
         state = replace(state, plain=other.plain, steps=other.steps if pays else state.steps)
+    return state
+
+
+def _with_names_for_curves(study: Study, state: SearchState) -> Stage[SearchState]:
+    """The state with a law in the place of a free curve that was chosen beside what has gone since; as it is where none draws it as well.
+
+    Seen: a platform's gravity, told as a curve: it was found beside the gain of a sensor, in whose place the gain of the torque came last.
+    """
+    for effect in state.effects:
+        if isinstance(effect.mechanism, Unknown) and beside_what_is_gone(state, effect):
+            named = yield from _named_behind(study, state, effect)
+            if named is not state:
+                return named
     return state
 
 

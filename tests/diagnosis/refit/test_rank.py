@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.score_test import ScreenScore
 from greybox_torch.diagnosis.screen.shortlist import Candidate, shortlist
 from greybox_torch.diagnosis.select.offered import screen_scores
+from greybox_torch.mechanisms.actuator import InputGain
 from greybox_torch.mechanisms.actuator_deadzone import ActuatorDeadzone
 from greybox_torch.mechanisms.attachment import Attachment, attach
 from greybox_torch.mechanisms.friction import CoulombFriction
@@ -125,6 +126,22 @@ def test_what_was_found_before_is_tried_over_all_windows(dead_zone_search, monke
     tried.clear()
     rank(study, current, [little])
     assert tried == [middle, "in full"]
+
+
+def test_heights_of_a_curve_rest_but_beside_a_gain(dead_zone_search, motor, monkeypatch) -> None:
+    """Seen: the gain of a wheel's torque, no rival of the gain of its sensor (0.97) as long as the curve at its pivot rested."""
+    search, rested = dead_zone_search, {}
+    curve = attach(motor, "rotor", Unknown("speed"))
+    current = search.refitted((curve,), search.plain)
+
+    def fit(study: Any, effects: Any, starts: Any, *, frozen: frozenset[str], **how: Any) -> None:
+        rested[effects[-1].mechanism.name] = len(frozen)
+
+    monkeypatch.setattr("greybox_torch.diagnosis.refit.rank.fit", fit)
+    laws = (attach(motor, "actuator", InputGain()), attach(motor, "rotor", CoulombFriction()))
+    assert rank(search.study, current, [Candidate(law, ({},), 0.5) for law in laws]) == []
+    heights = [p for p in current.model.declared_parameters if p.shrunk]
+    assert heights and rested == {"input_gain": 0, "coulomb_friction": len(heights)}
 
 
 def test_trials_are_compared_over_the_same_windows(dead_zone_search, monkeypatch) -> None:
