@@ -21,6 +21,9 @@ def test_a_negative_validation_fit_is_told_beside_what_was_found() -> None:
         "of no use for predicting them, though it explains much of the error over short windows. A column may have another sign, scale or "
         "meaning than the card says, or a term of the equations the wrong sign."
     )
+    assert found.sentence.endswith(
+        "; windows show it, while free runs say little: with it the validation fit goes from -94.3 % to -94.3 %."
+    )
     lost = replace(found, scores={s: scores(-4321.0) for s in ("start", "refit", "augmented")})
     assert "(validation fit below -1000 %)" in lost.of_no_use[0]
     assert notes(found)[0] == told and told in Headline.of(found).beside
