@@ -47,7 +47,9 @@ class Tank(gt.GreyBoxModel):
     outputs = [gt.Output("level", "m")]
 
 
-@pytest.mark.parametrize(("heading", "units"), [("inflow [US gal/min]", ""), ("inflow", "US gal/min"), ("inflow", "GPM")])
+@pytest.mark.parametrize(
+    ("heading", "units"), [("inflow [US gal/min]", ""), ("inflow", "US gal/min"), ("inflow", "GPM")]
+)
 def test_a_card_converts_them(tmp_path: Path, heading: str, units: str) -> None:
     line = [f"s,{units},m"] if units else []
     rows = [f"{0.5 * k},{10 + k % 3},{k / 7}" for k in range(100)]
