@@ -24,6 +24,7 @@ from greybox_torch.data.file_clocks import with_clocks
 from greybox_torch.data.file_units import check_unit_of_time, check_units, factor_of, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
+from greybox_torch.data.model_of_card import absolute_model
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
@@ -41,8 +42,11 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     "validation", the last quarter of each becomes a recording "<name> (held out)" with that role. Raises UserError,
     with one message that names the file and the field, line or sample, for whatever is wrong in card or recordings.
     """
-    path = Path(path)
-    card = read_card(path)
+    return dataset_of(read_card(Path(path)), Path(path))
+
+
+def dataset_of(card: Card, path: Path) -> DataSet:
+    """The data set of a card that stands at `path`, or would. Raises UserError as :func:`load_dataset` does."""
     read = cache(read_table)  # experiments are often slices of one file
     return DataSet(
         [_read_recording(path, card.of(experiment), experiment, read) for experiment in card.experiment],
@@ -50,7 +54,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         name=card.name or absolute(path).parent.name or "recordings",
         path=path,
         channels={name: _channel(name, entry) for name, entry in card.channels.items()},
-        model=_absolute_model(card.model.name, path),
+        model=absolute_model(card.model.name, path),
         parameters=card.model.parameters,
         initial=card.model.initial,
         diagnosis=card.diagnosis,
@@ -238,13 +242,3 @@ def _processed(
         done.time, done.sample_time = done.time[:: card.decimate], done.sample_time * card.decimate
         done.notes.append(f"one of {card.decimate} samples kept, behind a low pass against aliasing")
     return done
-
-
-def _absolute_model(name: str | None, path: Path) -> str | None:
-    """ "my_motor.py:Motor" with the file relative to the card made absolute; the name of a built-in system as it is."""
-    if name is None:
-        return None
-    file, colon, model_class = name.rpartition(":")
-    if not file.endswith(".py"):
-        return name
-    return f"{absolute((path.parent / file).parent) / Path(file).name}{colon}{model_class}"

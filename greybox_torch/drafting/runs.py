@@ -9,6 +9,10 @@ from difflib import SequenceMatcher
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
+from greybox_torch.data.clocks_written import in_clocks
 from greybox_torch.data.processing import at_times
 from greybox_torch.drafting.channels import Drafted, drafted, wanted_of
 from greybox_torch.drafting.clock import Clock
@@ -24,18 +28,27 @@ _SAME_TIME = 0.5
 class Run:
     """One experiment: ``files`` that were recorded together, the first of which has the time stamps that count.
 
-    ``whole`` has the columns of all of them at these times, ``table`` the channels that are made of them.
+    ``whole`` has the columns of all of them at these times, ``table`` the channels that are made of them. ``clock`` is that of the first,
+    ``clocks`` those of all of several.
     """
 
     files: tuple[Recorded, ...]
     whole: Recorded
     clock: Clock
     table: Drafted
+    clocks: tuple[Clock, ...] = ()
 
     @property
     def channels(self) -> set[str]:
         """Those that a column was found for."""
         return {draft.name for draft in self.table.channels if draft.column is not None}
+
+    @property
+    def step(self) -> float | None:
+        """The usual step in s; None where it is not known."""
+        if self.clock.column is None:
+            return self.clock.sample_time
+        return float(np.median(np.diff(_seconds(self))))
 
     @property
     def complete(self) -> bool:
@@ -60,7 +73,9 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
     if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
         return tuple(alone)
     by_name = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
-    made = [*whole, *(_of_other_names(by_name, model) if len(by_clock) > 1 else by_name)]
+    if len(by_clock) > 1:
+        by_name = _of_own_clocks(_of_other_names(by_name, model), model, named=bool(whole))
+    made = [*whole, *by_name]
     return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
 
 
@@ -72,6 +87,17 @@ def _of_other_names(runs: Sequence[Run], model: GreyBoxModel | None) -> Sequence
     joined = [run for run in _of_loggers(renamed, model) if len(run.files) > 1] if renamed else []
     used = {file.path for run in joined for file in run.files}
     return [*joined, *(run for run in runs if run.files[0].path not in used)]
+
+
+def _of_own_clocks(runs: Sequence[Run], model: GreyBoxModel | None, *, named: bool) -> Sequence[Run]:
+    """The runs that the single files among these make up whose time stamps have another name or unit in each; with ``named``, if names of
+    their files have a word in common: beside files that have all channels, others may lack some.
+    """
+    single = [run for run in runs if len(run.files) == 1 and run.clock.column is not None]
+    made = _of_loggers(single, model) if single else []
+    if named and not all(_shared([file.path for file in run.files]) for run in made):
+        return runs
+    return [*made, *(run for run in runs if run not in single)]
 
 
 def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
@@ -103,8 +129,8 @@ def apart(runs: Sequence[Run]) -> str:
             names = [one.files[0].path.name for one in (first, run)]
             return (
                 f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
-                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in one unit, in a column of one '
-                "name or at one position (time = 1 for the first of each)"
+                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in each; of another name, unit or zero '
+                f"than time at the top says: {in_clocks(names[1], column='…', unit='…', offset=0.0).replace('= 0 ', '= … ')}"
             )
     return ""
 
@@ -126,9 +152,13 @@ def names_of(runs: Sequence[Run]) -> list[str]:
 def _common(paths: Sequence[Path]) -> str:
     if len(paths) == 1:
         return paths[0].stem
+    return "_".join(_shared(paths)) or paths[0].stem
+
+
+def _shared(paths: Sequence[Path]) -> list[str]:
+    """The words that all names have in common."""
     words = [re.findall(r"[^\W_]+", path.stem) for path in paths]
-    shared = [word for word in words[0] if all(word in other for other in words[1:])]
-    return "_".join(shared) or paths[0].stem
+    return [word for word in words[0] if all(word in other for other in words[1:])]
 
 
 def _by_logger(runs: Sequence[Run], model: GreyBoxModel | None) -> list[list[Run]]:
@@ -146,7 +176,7 @@ def _may_be_joined(loggers: Sequence[Sequence[Run]], model: GreyBoxModel | None)
     """Whether all have sound time stamps in a column, and columns that the others lack."""
     if any(run.clock.broken for of_one in loggers for run in of_one):
         return False
-    if loggers[0][0].clock.column is None:
+    if any(run.clock.column is None for of_one in loggers for run in of_one):
         return False
     pairs = list(combinations([of_one[0].signals for of_one in loggers], 2))
     if model is None:
@@ -183,22 +213,28 @@ def _partner(run: Run, candidates: Sequence[Run]) -> Run | None:
 
 
 def _at_once(run: Run, other: Run) -> bool:
-    spans = [(stamps[0], stamps[-1]) for one in (run, other) for stamps in [one.whole.columns[one.clock.column or ""]]]
+    spans = [(stamps[0], stamps[-1]) for one in (run, other) for stamps in [_seconds(one)]]
     both = min(end for _, end in spans) - max(begin for begin, _ in spans)
     return both >= _SAME_TIME * min(end - begin for begin, end in spans)
 
 
+def _seconds(run: Run) -> NDArray[np.float64]:
+    """The time stamps (N,) of a run of one file, in s."""
+    return run.whole.columns[run.clock.column or ""] * run.clock.seconds
+
+
 def _joined(runs: Sequence[Run], model: GreyBoxModel | None) -> Run:
     """One run of several files, in which a column is that of the first file that has it, as joining reads it."""
-    first, clock = runs[0].whole, runs[0].clock
-    name = clock.column or ""
+    first, clock, times = runs[0].whole, runs[0].clock, _seconds(runs[0])
     columns, units = {}, {}
     for run in runs:
-        stamps = run.whole.columns[name]
-        new = {c: values for c, values in run.whole.columns.items() if c not in columns}
-        columns |= {c: at_times(first.columns[name], stamps, values) for c, values in new.items()}
+        kept = columns if run is runs[0] else {*columns, run.clock.column}
+        new = {c: values for c, values in run.whole.columns.items() if c not in kept}
+        columns |= {
+            c: values if run is runs[0] else at_times(times, _seconds(run), values) for c, values in new.items()
+        }
         units = {**run.whole.units, **units}
     files = tuple(run.files[0] for run in runs)
     faults = {column: fault for file in files for column, fault in file.faults.items()}
     whole = replace(first, columns=columns, units=units, faults=faults)
-    return Run(files, whole, clock, drafted(whole, clock, model))
+    return Run(files, whole, clock, drafted(whole, clock, model), tuple(run.clock for run in runs))
