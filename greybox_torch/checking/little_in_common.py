@@ -65,7 +65,9 @@ def counters_as_time(data: DataSet) -> Iterator[LittleInCommon]:
     """Columns of time stamps that are called as counters of samples, and count them."""
     card = card_at(data.path)
     seen: set[str] = set()
-    for recording in data.recordings if card is not None else ():
+    if card is None:
+        return
+    for recording in data.recordings:
         entry = next((e for e in card.experiment if recording.name in (e.name, f"{e.name}{HELD_OUT}")), None)
         time = None if entry is None else card.of(entry).time
         if time is None or time.column in seen or not counts_samples(time.column, recording.time / time.seconds):

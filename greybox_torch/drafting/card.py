@@ -10,6 +10,7 @@ from pathlib import Path
 from greybox_torch.data.clocks_written import clock_written
 from greybox_torch.data.gaps import Gap, pieces_around
 from greybox_torch.data.summer_time import instead_of_summer_time
+from greybox_torch.drafting.apart import apart, apart_without_a_model
 from greybox_torch.drafting.channels import Draft, wanted_of
 from greybox_torch.drafting.chosen import FEW, held_out
 from greybox_torch.drafting.clock import Clock, clock_of
@@ -19,7 +20,7 @@ from greybox_torch.drafting.one_run import perhaps_one_run
 from greybox_torch.drafting.own_units import units_of_others
 from greybox_torch.drafting.recorded import Recorded, recorded
 from greybox_torch.drafting.refused import of_other_steps, why_refused
-from greybox_torch.drafting.runs import Run, apart, fullest, names_of, runs_of
+from greybox_torch.drafting.runs import Run, fullest, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
@@ -77,7 +78,7 @@ def draft_card(
     missing = [f"[channels] {draft.name}: {draft.remark}" for draft in first.table.channels if draft.column is None]
     if missing:  # what there is to them may be in a column that could not be read, or in another file
         missing += [fault for file in first.files for fault in _faults(file)]
-    parted = apart(runs) if model is not None else ""
+    parted = apart(runs) if model is not None else apart_without_a_model(runs)
     if model is not None and not (parted and missing):  # what the first lacks goes for all that are to be joined
         missing += of_further_runs(runs)
     missing += [*of_units, *filter(None, [parted])]

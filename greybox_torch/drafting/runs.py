@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.clocks_written import in_clocks
 from greybox_torch.data.processing import at_times
 from greybox_torch.drafting.channels import Drafted, drafted, wanted_of
 from greybox_torch.drafting.clock import Clock
@@ -44,6 +43,12 @@ class Run:
         return {draft.name for draft in self.table.channels if draft.column is not None}
 
     @property
+    def dated(self) -> bool:
+        """Whether the time stamps of all files have dates or times of day."""
+        clocks = self.clocks or (self.clock,)
+        return all(clock.column in file.stamps for clock, file in zip(clocks, self.files, strict=True))
+
+    @property
     def step(self) -> float | None:
         """The usual step in s; None where it is not known."""
         if self.clock.column is None:
@@ -70,10 +75,10 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
     by_clock: dict[tuple[str | None, str], list[Run]] = {}
     for run in (run for run in alone if run not in whole):
         by_clock.setdefault((run.clock.column, run.clock.unit), []).append(run)
-    if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
-        return tuple(alone)
     by_name = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
-    if len(by_clock) > 1:
+    if model is None and len(by_clock) > 1:  # then columns and names are all that tells what is one signal, and one run
+        by_name = _of_own_clocks(alone, None, named=True)
+    elif len(by_clock) > 1:
         by_name = _of_own_clocks(_of_other_names(by_name, model), model, named=bool(whole))
     made = [*whole, *by_name]
     return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
@@ -90,12 +95,12 @@ def _of_other_names(runs: Sequence[Run], model: GreyBoxModel | None) -> Sequence
 
 
 def _of_own_clocks(runs: Sequence[Run], model: GreyBoxModel | None, *, named: bool) -> Sequence[Run]:
-    """The runs that the single files among these make up whose time stamps have another name or unit in each; with ``named``, if names of
-    their files have a word in common: beside files that have all channels, others may lack some.
+    """The runs that the single files among these make up whose time stamps have another name or unit in each; with ``named``, if they
+    have dates, or the names of their files a word in common: beside files that have all channels, others may lack some.
     """
     single = [run for run in runs if len(run.files) == 1 and run.clock.column is not None]
     made = _of_loggers(single, model) if single else []
-    if named and not all(_shared([file.path for file in run.files]) for run in made):
+    if named and not all(run.dated or _shared([file.path for file in run.files]) for run in made):
         return runs
     return [*made, *(run for run in runs if run not in single)]
 
@@ -118,21 +123,6 @@ def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Ru
         return parts
     used = {id(run) for runs in of_one for run in runs}
     return [*joined, *(run for run in parts if id(run) not in used)]
-
-
-def apart(runs: Sequence[Run]) -> str:
-    """What to do where files that were not joined have different channels of the model, of which none can be simulated; else ""."""
-    maybe_whole = [run for run in runs if run.complete or len(run.signals) == len(run.table.channels)]
-    first, *others = [run for run in runs if run not in maybe_whole] or runs[:1]
-    for run in others:
-        if run.channels - first.channels or (run.clock.column is not None and not run.channels):
-            names = [one.files[0].path.name for one in (first, run)]
-            return (
-                f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
-                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in each; of another name, unit or zero '
-                f"than time at the top says: {in_clocks(names[1], column='…', unit='…', offset=0.0).replace('= 0 ', '= … ')}"
-            )
-    return ""
 
 
 def fullest(runs: Sequence[Run]) -> list[int]:
@@ -189,8 +179,9 @@ def _gains(alone: Sequence[Run], joined: Run) -> bool:
     are of one time, whether none has all.
     """
     most = max(len(run.channels) for run in alone)
-    dated = all(run.clock.column in run.whole.stamps for run in alone)
-    none_twice = dated and not any(one.signals & other.signals for one, other in combinations(alone, 2))
+    none_twice = all(run.dated for run in alone) and not any(
+        one.signals & other.signals for one, other in combinations(alone, 2)
+    )
     return len(joined.channels) > most or (none_twice and most < len(joined.table.channels))
 
 

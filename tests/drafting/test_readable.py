@@ -87,7 +87,7 @@ def test_what_cannot_be_read_is_said(tmp_path: Path) -> None:
 def test_sample_times_that_differ_are_said(tmp_path: Path) -> None:
     """Seen: two files of which each says its sample time, and a card with that of the first for both."""
     for name, step in (("a", 0.01), ("b", 0.02), ("c", 0.01)):
-        np.savez(tmp_path / f"{name}.npz", Ts=step, **{n: np.sin(TIME + k) for k, n in enumerate(ALL)})
+        np.savez(tmp_path / f"{name}.npz", Ts=step, current=TIME % 1.0, position=TIME % 2.0, speed=TIME % 3.0)
     (told,) = gt.card([tmp_path / f"{name}.npz" for name in "abc"], Axis()).open
     assert told.startswith('[[experiment]] "b": Ts = 0.02 in b.npz, and sample_time = 0.01 s goes for all experiments')
     assert not gt.card([tmp_path / "a.npz", tmp_path / "c.npz"], Axis()).open
@@ -125,6 +125,28 @@ def test_a_drive_and_a_camera_are_one_experiment(
     assert [(run.name, run.role) for run in runs] == [("0", "estimation"), ("1", "validation")]
     for run in runs:
         np.testing.assert_allclose(run.signals["position"][:-2], np.sin(TIME + 1)[:-2], atol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("names", "stamps", "joined"),
+    [
+        (("run1_drive", "run1_camera"), (("t", plain), ("stamp_ms", in_ms)), True),
+        (("drive", "camera"), (PAIR, ("Timestamp", date)), True),
+        (("drive", "camera"), (("t", plain), ("stamp_ms", in_ms)), False),
+    ],
+)
+def test_without_a_model_names_or_dates_tell_what_is_one_run(
+    tmp_path: Path, names: tuple[str, str], stamps: tuple[tuple[str, Stamp], tuple[str, Stamp]], joined: bool
+) -> None:
+    drive = log(tmp_path / f"{names[0]}.csv", *stamps[0], "current", "speed")
+    camera = log(tmp_path / f"{names[1]}.csv", *stamps[1], "position", time=CAMERA)
+    card = gt.card([drive, camera])
+    assert ('join = "time"' in card.text) is joined and bool(card.open) is not joined
+    if joined:
+        card.save()
+        assert set(gt.load_dataset(tmp_path / "dataset.toml").channels) == set(ALL)
+    else:
+        assert "have different channels; if they are of one run, one experiment with both" in card.open[0]
 
 
 def test_a_counter_alone_is_no_clock(tmp_path: Path) -> None:
