@@ -46,12 +46,12 @@ def check_common_time(
             found = "they have no time in common" if apart else f"no sample of {first.path.name} lies within"
             shift = float(whole[0] - own[0]) * time.seconds
             expected = _begin_together(names[0], name, experiment.clocks.get(name), shift) if apart else _MOST_FIRST
-            stamps = whole
         else:
             found, expected = "they have hardly any time in common", ""
-        expected = _in_another_unit(experiment, (names[0], name), (_ends(stamps), _ends(own)), time) or expected
+        if _shared(_ends(stamps), _ends(own)) < _HARDLY:
+            expected = _in_another_unit(experiment, (names[0], name), (_ends(whole), _ends(own)), time) or expected
         if expected:
-            spans = f"{_span(other, own, time)}, and {first.path.name} {_span(first, stamps, time)}"
+            spans = f"{_span(other, own, time)}, and {first.path.name} {_span(first, whole, time)}"
             raise UserError(f'{place}: {other.path}, column "{time.column}": {spans}: {found}; expected {expected}')
 
 

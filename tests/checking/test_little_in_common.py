@@ -60,6 +60,8 @@ def test_another_unit_is_refused_with_what_to_write(
     write = f'clocks = {{ "{file}" = {{ unit = "{unit}" }} }}'
     assert f"they have hardly any time in common; expected {write} in that [[experiment]]" in str(raised.value)
     assert not told(joined(tmp_path, drive, camera, write + "\n", top))
+    with pytest.raises(gt.UserError, match="they have hardly any time in common"):
+        joined(tmp_path, drive, camera, "rows = [4500, 5000]\n", top)
 
 
 def test_a_unit_that_is_given_counts_and_what_is_missing_is_told(tmp_path: Path) -> None:
@@ -88,6 +90,8 @@ def test_rows_of_a_long_file_beside_a_short_one(tmp_path: Path) -> None:
     assert told(joined(tmp_path, whole, CAMERA))
     assert not told(joined(tmp_path, whole, CAMERA, "rows = [0, 4990]\n"))
     assert not told(joined(tmp_path, DRIVE, np.arange(0.0, 900.0)))  # a slow log of all day
+    day = np.arange(0.0, 86400.0, 2.0)
+    assert not told(joined(tmp_path, day, day, "rows = [10, 40]\n"))  # 20 to 78 s, 2/3 of a day that is read in ms
 
 
 def test_a_counter_is_no_time(tmp_path: Path) -> None:
