@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from documentation.tables import table
 from greybox_torch.data.card import Card, InitialEntry, ParameterEntry
-from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, OwnColumn, TimeEntry
+from greybox_torch.data.card_channels import ChannelEntry, Entry, ExperimentEntry, FileClock, OwnColumn, TimeEntry
 from greybox_torch.data.card_controller import LoopEntry
 
 TABLES: tuple[tuple[str, type[Entry]], ...] = (
@@ -16,6 +16,7 @@ TABLES: tuple[tuple[str, type[Entry]], ...] = (
     ("`[channels]`: `NAME = { … }`", ChannelEntry),
     ("`[[experiment]]`", ExperimentEntry),
     ("`columns = { NAME = { … } }` of an experiment", OwnColumn),
+    ("`clocks = { FILE = { … } }` of an experiment", FileClock),
     ("`[controller]`: `INPUT = { … }`", LoopEntry),
     ("`[model.parameters]`: `NAME = { … }`", ParameterEntry),
     ("`[model.initial]`: `STATE = { … }`", InitialEntry),

@@ -16,7 +16,7 @@ from greybox_torch.api.drafted_file import DraftedFile
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import USUAL
 from greybox_torch.drafting.card import CardDraft, draft_card
-from greybox_torch.drafting.further_runs import own_columns
+from greybox_torch.drafting.further_runs import own_clocks, own_columns
 from greybox_torch.drafting.runs import names_of
 from greybox_torch.errors import ArgumentError, UserError
 from greybox_torch.files import absolute
@@ -78,9 +78,15 @@ class CardResult(DraftedFile):
                 for file in self.draft.files
             ],
             "runs": [
-                {"name": name, "files": [str(file.path) for file in run.files], "columns": own_columns(run, runs[0])}
+                {
+                    "name": name,
+                    "files": [str(file.path) for file in run.files],
+                    "columns": own_columns(run, runs[0]),
+                    "clocks": own_clocks(run),
+                }
                 for name, run in zip(names_of(runs), runs, strict=True)
             ],
+            "held_out": self.draft.held_out,
             "open": list(self.open),
         }
 
@@ -90,6 +96,7 @@ class CardResult(DraftedFile):
                 Text(f"{file.path.name}: {file.samples} samples of {', '.join(file.columns)}"), soft_wrap=True
             )
         print_table(console, _COLUMNS, self._table())
+        console.print(Text(f"Held out for validation: {self.draft.held_out}"), soft_wrap=True)
         for line in self.open:
             console.print(Text(f"To be filled in: {line}", style="yellow"), soft_wrap=True)
 

@@ -9,6 +9,7 @@ from greybox_torch.checking.clipped_outputs import clipped_outputs
 from greybox_torch.checking.constant_channels import constant_channels
 from greybox_torch.checking.joined_files import joined_files
 from greybox_torch.checking.late_sensors import late_sensors
+from greybox_torch.checking.little_in_common import counters_as_time, little_in_common
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
 from greybox_torch.checking.percentages import percentages
@@ -50,6 +51,8 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *contradictions(data.path),
         *contradicted_steps(data),
         *odd_time_stamps(data, joined),
+        *little_in_common(joined),
+        *counters_as_time(data),
         *shared_columns(data),
         *shared_rows(data),
         *constant_channels(data, model),

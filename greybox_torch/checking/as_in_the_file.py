@@ -7,10 +7,9 @@ from numpy.typing import NDArray
 
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import read_card
-from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
+from greybox_torch.data.file_clocks import with_clocks
 from greybox_torch.data.holding_out import HELD_OUT
-from greybox_torch.data.over_files import over_files
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.source import source_of
 from greybox_torch.errors import UserError
@@ -59,7 +58,7 @@ def _in_its_file(data: DataSet, recording: Recording, name: str, sample: int) ->
     clock = card.time.column if card.time else None
     needed = [*columns, clock] if clock and said.join == "time" and clock not in columns else columns
     files = [data.path.parent / file for file in said.file]
-    dated = with_dates(over_files(files, said.join, read_table), card.time, clock)
+    dated = with_clocks(files, said, card.time, read_table)
     read = without_error_values(dated, card.channels, {name: formula})
     source = source_of(files, said.join, needed, clock, read)
     start, stop = recording.rows

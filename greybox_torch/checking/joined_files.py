@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet, Recording
 from greybox_torch.data.card import TIME, Card, card_at
 from greybox_torch.data.card_channels import ExperimentEntry
-from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
+from greybox_torch.data.file_clocks import with_clocks
 from greybox_torch.data.gaps import Gap, gap_steps
 from greybox_torch.data.holding_out import HELD_OUT
 from greybox_torch.data.readers import read_table
@@ -25,7 +25,7 @@ from greybox_torch.errors import UserError
 @dataclass(frozen=True, eq=False)
 class JoinedFiles:
     """Of one recording. ``rows`` are the experiment's in the first file, ``columns`` those of channels that are one column, ``clock`` is
-    the column of time stamps, a unit of which is so many ``seconds``.
+    the column of time stamps, a unit of which is so many ``seconds``; ``names`` are those of all files on the card.
     """
 
     recording: Recording
@@ -34,6 +34,7 @@ class JoinedFiles:
     columns: Mapping[str, str]
     clock: str
     seconds: float
+    names: tuple[str, ...]
 
     @property
     def time(self) -> NDArray[np.float64]:
@@ -64,6 +65,10 @@ class JoinedFiles:
         k = int(np.argmax(np.where(here, ends - begins, -np.inf)))
         step = float(np.median(np.diff(stamps)))
         return Gap(int(steps[k]), float(begins[k]), float(ends[k]), step, int(here.sum()), float(own[0]))
+
+    def name_of(self, table: Table) -> str:
+        """What the card calls the file of a joined table."""
+        return self.names[1 + self.source.joined.index(table)]
 
     def of(self, channel: str) -> tuple[Table, str] | None:
         """The joined file that a channel is one column of, and the column."""
@@ -100,8 +105,9 @@ def _read_again(data: DataSet, card: Card, entry: ExperimentEntry, recording: Re
     formulas = card.formulas(entry)
     columns = {name: formula.columns for name, formula in formulas.items()}
     needed = dict.fromkeys([*(column for of in columns.values() for column in of), clock])
-    known = without_error_values(with_dates(read, card.time, clock), card.channels, formulas)
-    source = source_of([data.path.parent / file for file in entry.file], entry.join, list(needed), clock, known)
+    files = [data.path.parent / file for file in entry.file]
+    known = without_error_values(with_clocks(files, entry, card.time, read), card.channels, formulas)
+    source = source_of(files, entry.join, list(needed), clock, known)
     start, stop = entry.rows or (0, len(source.columns[clock]))
     alone = {name: of[0] for name, of in columns.items() if len(of) == 1}
-    return JoinedFiles(recording, source, (start, stop), alone, clock, card.time.seconds)
+    return JoinedFiles(recording, source, (start, stop), alone, clock, card.time.seconds, tuple(entry.file))

@@ -224,7 +224,11 @@ def read_card(path: Path) -> Card:
     with suppress(OSError, ValueError):  # of names that no file can have, which reading says
         if found := _what_else(path):
             raise UserError(f"{path}: {found}")
-    content = read_toml(path, "a data card, dataset.toml")
+    return card_of(read_toml(path, "a data card, dataset.toml"), path)
+
+
+def card_of(content: dict[str, Any], path: Path) -> Card:
+    """The card that the tables ``content`` make at `path`, be it written there or not. Raises UserError as :func:`read_card` does."""
     try:
         return Card.model_validate(content)
     except ValidationError as error:

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from greybox_torch.data.expression import Expression, parse_expression
+from greybox_torch.errors import did_you_mean
 
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f]")
 
@@ -29,6 +30,8 @@ def visible(text: str) -> str:
 Text = Annotated[str, Field(min_length=1), AfterValidator(printable)]
 Name = Annotated[Text, AfterValidator(visible)]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+
+TimeUnit = Literal["s", "ms", "us", "µs", "ns", "min", "h"]
 
 
 def _is_number(text: str) -> bool:
@@ -137,7 +140,7 @@ class TimeEntry(Entry):
     """The column of time stamps, and its unit. `date` is the column of their dates, where it has times of day alone."""
 
     column: Text
-    unit: Literal["s", "ms", "us", "µs", "ns", "min", "h"] = "s"
+    unit: TimeUnit = "s"
     date: Text | None = None
 
     _position = field_validator("column", "date", mode="before")(_column)
@@ -176,6 +179,21 @@ class OwnColumn(Entry):
         return self
 
 
+class FileClock(Entry):
+    """The time stamps of one of several files that are joined in time: what is left out is as the card, or the experiment, says of `time`.
+
+    `offset` are seconds to add, where the clock of this file begins at another zero, or is wrong. A `column` of its own has the `date` that
+    is given with it. Where `unit` is given, it holds, however little the files then have in common.
+    """
+
+    column: Text | None = None
+    unit: TimeUnit | None = None
+    date: Text | None = None
+    offset: Finite = 0.0
+
+    _position = field_validator("column", "date", mode="before")(_column)
+
+
 class ExperimentEntry(Entry):
     """One recording: its file or files, its role, and optionally `rows` ([start, stop], counted from zero, stop left
     out) and columns of its own.
@@ -184,6 +202,8 @@ class ExperimentEntry(Entry):
     `{ column = "h", file_unit = "cm" }` for a channel.
     `join` says how several files belong together: "concatenate", one after the other, "time", columns matched by their time stamps, or
     "rows", samples of one number side by side; a column by its position is then counted over the columns of all files.
+    `clocks`, by file, has the time stamps of files that are joined in time and whose stamps have a name, a unit or a zero of their own:
+    `{ "camera.csv" = { column = "stamp", unit = "ms", offset = 0.35 } }`.
     `constants` are channels that have one value throughout the experiment, in the channel's `unit`: they need no column, and where they
     have one it is not read.
     """
@@ -194,6 +214,7 @@ class ExperimentEntry(Entry):
     role: Literal["estimation", "validation"] = "estimation"
     rows: Annotated[list[int], Field(min_length=2, max_length=2)] | None = None
     columns: dict[str, OwnColumn] = {}
+    clocks: dict[str, FileClock] = {}
     constants: dict[str, Finite] = {}
 
     @field_validator("file", mode="before")
@@ -215,4 +236,13 @@ class ExperimentEntry(Entry):
                 'several files are given without "join"; expected join = "concatenate" (one after the other), '
                 '"time" (columns matched by their time stamps) or "rows" (samples of one number side by side)'
             )
+        if self.clocks and (len(self.file) < 2 or self.join != "time"):
+            raise ValueError(
+                '"clocks" is given for other files than several with join = "time"; expected columns = { time = … } for a single file'
+            )
+        for file in self.clocks:
+            if file not in self.file:
+                raise ValueError(
+                    f'clocks: no file "{file}"{did_you_mean(file, self.file)}; expected {", ".join(self.file)}'
+                )
         return self

@@ -15,7 +15,7 @@ _ENDINGS = {
     "mnm": "mN m", "mm": "mm", "ma": "mA", "mv": "mV", "bar": "bar", "degc": "degC", "°c": "degC", "degf": "degF", "°f": "degF", "kw": "kW",
     "kn": "kN", "knm": "kN m", "mrad": "mrad", "cm": "cm", "km": "km", "um": "um", "µm": "um", "kg": "kg", "ms": "ms", "us": "us",
     "kv": "kV", "kj": "kJ", "hz": "Hz", "khz": "kHz", "hpa": "hPa", "kpa": "kPa", "mpa": "MPa", "mbar": "mbar",
-    "kmh": "km/h", "kph": "km/h",
+    "kmh": "km/h", "kph": "km/h", "gpm": "gpm", "lpm": "l/min",
 }  # fmt: skip
 _GLUED = re.compile(r"([uyUY])([A-Za-z]{2,4})")
 """An input or output by its letter, and perhaps its unit: yrad beside y, which holds counts."""

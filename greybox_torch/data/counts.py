@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from greybox_torch.data.expression import Expression
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
@@ -13,6 +16,11 @@ _COUNTS = re.compile(r"(counts?|cnts?|ticks?|pulses?|incr?|increments?|steps?|ls
 _ANGLE = re.compile(r"(?P<angle>rad|mrad|deg|degrees?|°|rev|revolutions?|turns?)( */ *s| s\^?-1)?|rpm")
 _ENCODER = re.compile(r"(^|[\W_\d])(enc([\W_\d]|$)|encoder|geber|drehgeber)", re.IGNORECASE)
 _NAMED = re.compile(r"(^|[\W_])(counts?|cnts?|ticks?)\W*$", re.IGNORECASE)
+_OF_SAMPLES = re.compile(
+    r"(frames?|samples?|index|idx|counter|count|cnt|seq|sequence|rows?|lines?|nr|no|num|number|records?|scans?|packets?|bild|i|k|n)"
+    r"([_ .]?(no|nr|num|number|id|idx|index|count|counter|cnt))?[.:#]?",
+    re.IGNORECASE,
+)
 _TURN = {"rad": "2*pi", "mrad": "2000*pi", "rev": "1", "revolution": "1", "turn": "1", "rpm": "60"}
 """A turn, in the units that are not degrees."""
 
@@ -30,6 +38,16 @@ def named_as_count(column: str) -> bool:
 def ends_in_counts(column: str) -> bool:
     """Whether the name of a column ends with counts as its unit: motor_counts, enc [counts]."""
     return _NAMED.search(column) is not None
+
+
+def named_as_counter(column: str) -> bool:
+    """Whether a column is called as one that counts samples: frame, sample_no, idx."""
+    return _OF_SAMPLES.fullmatch(column.strip()) is not None
+
+
+def counts_samples(column: str, values: NDArray[np.float64]) -> bool:
+    """Whether a column is called so, and its values (N,) are whole numbers."""
+    return named_as_counter(column) and bool(np.all(np.abs(values - np.round(values)) < 1e-6))
 
 
 def is_angle(unit: str) -> bool:

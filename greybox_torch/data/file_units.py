@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.card_channels import ChannelEntry, TimeEntry
+from greybox_torch.data.clocks_written import in_clocks
 from greybox_torch.data.counts import check_counts, is_count
 from greybox_torch.data.expression import Expression
 from greybox_torch.data.own_columns import conversion_written, in_that_experiment
@@ -138,15 +139,21 @@ def _of_rate(unit: str, entry: ChannelEntry) -> str:
     return unit if entry.derivative is None else f"{unit} / s"
 
 
-def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str) -> None:
-    """Raises UserError where a file says another unit of its time stamps than the card at `path`."""
-    for table in source.every:
-        said = table.units.get(clock, "")
-        found = unit_of_time(said)
-        if not found or found == time.unit.replace("µ", "u"):
-            continue
-        raise UserError(
-            f'{path}, time: {table.path} has column "{clock}" in "{said}", the card says "{time.unit}"; '
-            f'expected time = {{ column = "{clock}", unit = "{found}" }}, or, where other files of the card are in "{time.unit}", '
+def check_unit_of_time(path: Path, time: TimeEntry, source: Source, clock: str, files: Sequence[str] = ()) -> None:
+    """Raises UserError where a file says another unit of its time stamps than the card at `path`, which calls the ``files`` so."""
+    said = {table.path: table.units.get(clock, "") for table in source.every}
+    other = [file for file, unit in said.items() if unit_of_time(unit) not in ("", time.unit.replace("µ", "u"))]
+    if not other:
+        return
+    found = unit_of_time(said[other[0]])
+    if source.joined and len(other) < len(said):
+        name = dict(zip((table.path for table in source.every), files, strict=False)).get(other[0], other[0].name)
+        expected = in_clocks(name, column=clock, unit=found)
+    else:
+        expected = (
+            f'time = {{ column = "{clock}", unit = "{found}" }}, or, where other files of the card are in "{time.unit}", '
             + in_that_experiment("time", f'column = "{clock}", unit = "{found}"')
         )
+    raise UserError(
+        f'{path}, time: {other[0]} has column "{clock}" in "{said[other[0]]}", the card says "{time.unit}"; expected {expected}'
+    )

@@ -10,6 +10,7 @@ import numpy as np
 
 from greybox_torch.data.asked_for import left_out
 from greybox_torch.data.recording import Recording
+from greybox_torch.data.source import JOINED_IN_TIME
 from greybox_torch.errors import UserError
 from greybox_torch.name_lists import listed
 
@@ -61,6 +62,11 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
             if np.isnan(values).all():
                 others = [r for r in recordings if not np.isnan(r.signals[channel]).all()]
                 advice = f"; {left_out(channel)}" if others and path is not None else ""
+                if any(JOINED_IN_TIME in note for note in recording.notes):
+                    names = listed([file.name for file in recording.further])
+                    advice += (
+                        f"; where the stamps of {names} are in another unit, or begin at another zero, `clocks` says so"
+                    )
                 # rows of the first file, which need not be the one that has the column
                 of = "" if recording.source is None else f" of {recording.source}"
                 of += f" with {listed([file.name for file in recording.further])}" if recording.further else ""

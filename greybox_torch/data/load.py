@@ -16,14 +16,15 @@ from greybox_torch.data.card_channels import ChannelEntry, ExperimentEntry
 from greybox_torch.data.card_constants import constants_of, told_constants
 from greybox_torch.data.checks import check_finite, check_length, check_time
 from greybox_torch.data.column_units import unit_in
+from greybox_torch.data.common_time import check_common_time
 from greybox_torch.data.dataset import DataSet
-from greybox_torch.data.dates import with_dates
 from greybox_torch.data.error_values import without_error_values
 from greybox_torch.data.expression import Expression
+from greybox_torch.data.file_clocks import with_clocks
 from greybox_torch.data.file_units import check_unit_of_time, check_units, factor_of, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
 from greybox_torch.data.missing import where_missing
-from greybox_torch.data.over_files import over_files
+from greybox_torch.data.model_of_card import absolute_model
 from greybox_torch.data.processing import at_times, decimated, derivative, even_grid
 from greybox_torch.data.readers import read_table
 from greybox_torch.data.recording import Channel, Recording
@@ -41,8 +42,11 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
     "validation", the last quarter of each becomes a recording "<name> (held out)" with that role. Raises UserError,
     with one message that names the file and the field, line or sample, for whatever is wrong in card or recordings.
     """
-    path = Path(path)
-    card = read_card(path)
+    return dataset_of(read_card(Path(path)), Path(path))
+
+
+def dataset_of(card: Card, path: Path) -> DataSet:
+    """The data set of a card that stands at `path`, or would. Raises UserError as :func:`load_dataset` does."""
     read = cache(read_table)  # experiments are often slices of one file
     return DataSet(
         [_read_recording(path, card.of(experiment), experiment, read) for experiment in card.experiment],
@@ -50,7 +54,7 @@ def load_dataset(path: str | PathLike[str]) -> DataSet:
         name=card.name or absolute(path).parent.name or "recordings",
         path=path,
         channels={name: _channel(name, entry) for name, entry in card.channels.items()},
-        model=_absolute_model(card.model.name, path),
+        model=absolute_model(card.model.name, path),
         parameters=card.model.parameters,
         initial=card.model.initial,
         diagnosis=card.diagnosis,
@@ -78,12 +82,13 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     needed = [*(c for formula in formulas.values() for c in formula.columns), *clocks[:1]]
     others = [path.parent / file for other in card.experiment if other is not experiment for file in other.file[:1]]
     with asked_for(place, formulas, clocks, others, read):
-        dated = with_dates(over_files(files, experiment.join, read), card.time, clock)
+        dated = with_clocks(files, experiment, card.time, read)
         known = without_error_values(dated, card.channels, formulas)
         source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
-    time, sample_time = _time(place, path, card, source, clock, start, stop)
+    time, sample_time = _time(place, path, card, source, clock, start, stop, experiment.file)
+    check_common_time(place, experiment, card.time, source, (start, stop))
     check_units(place, card.channels, formulas, source, experiment.columns)
     signals = {
         name: _signal(f'{place}, channel "{name}"', card.channels[name], formula, source, start, stop)
@@ -141,7 +146,7 @@ def _rows(place: str, source: Source, rows: list[int] | None) -> tuple[int, int]
 
 
 def _time(
-    place: str, path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int
+    place: str, path: Path, card: Card, source: Source, clock: str | None, start: int, stop: int, files: list[str]
 ) -> tuple[NDArray[np.float64], float]:
     """Time stamps (N,) and the usual step, in seconds."""
     if card.time is None or clock is None:
@@ -153,7 +158,7 @@ def _time(
                 f"{path}: sample_time: {step:g} s makes times that are no numbers; expected seconds between samples"
             )
         return time, step
-    check_unit_of_time(path, card.time, source, clock)
+    check_unit_of_time(path, card.time, source, clock, files)
     time = source.columns[clock][start:stop]
     time = time if card.time.unit == "s" else time * card.time.seconds
     check_time(time, lambda sample: f"{place}: {source.place(clock, start + sample)}")
@@ -237,13 +242,3 @@ def _processed(
         done.time, done.sample_time = done.time[:: card.decimate], done.sample_time * card.decimate
         done.notes.append(f"one of {card.decimate} samples kept, behind a low pass against aliasing")
     return done
-
-
-def _absolute_model(name: str | None, path: Path) -> str | None:
-    """ "my_motor.py:Motor" with the file relative to the card made absolute; the name of a built-in system as it is."""
-    if name is None:
-        return None
-    file, colon, model_class = name.rpartition(":")
-    if not file.endswith(".py"):
-        return name
-    return f"{absolute((path.parent / file).parent) / Path(file).name}{colon}{model_class}"

@@ -24,7 +24,9 @@ def conversion_written(name: str, column: str, keys: str, *, own: bool) -> str:
 
 
 def own_time(time: TimeEntry, own: OwnColumn | None) -> TimeEntry:
-    """The time stamps of an experiment that may name a column of its own, in the card's unit unless it gives another."""
+    """The time stamps of an experiment that may name a column of its own, in the card's unit unless it gives another. Whether the card's
+    column of dates belongs to it, :func:`greybox_torch.data.file_clocks.with_clocks` sees in the file.
+    """
     if own is None:
         return time
     given = own.model_dump(include={"column", "unit", "date"}, exclude_none=True)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from greybox_torch.data.checks import DAY, check_finite, check_same_length, check_time
+from greybox_torch.data.checks import check_finite, check_same_length, check_time
+from greybox_torch.data.clocks_written import in_clocks
 from greybox_torch.data.gaps import in_gaps, lost_samples
 from greybox_torch.data.in_no_file import in_nested_file, in_no_file
 from greybox_torch.data.joined_rows import joined_rows
@@ -20,6 +20,9 @@ from greybox_torch.data.readers.table import NoSuchColumn, Table
 from greybox_torch.errors import UserError
 
 Read = Callable[..., Table]
+
+JOINED_IN_TIME = "joined in time"
+"""In notes, of a column that is from another file than the time stamps."""
 
 _SHOWN = 3
 """Places at which samples are missing in a joined file."""
@@ -112,8 +115,6 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
         if table is tables[0]:
             held = own
         else:
-            if len(own) > 1:
-                _check_in_common(tables[0], table, time)
             unknown = in_gaps(held[time], own[time])
             across = ", and missing across its gaps" if unknown.any() else ""
             across = f"{_also_across_lost(table, own[time])}{across}"
@@ -123,38 +124,12 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
                     held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], own[column]))
                     notes.append(
-                        f'column "{column}" is from {file.name}, joined in time on straight lines between its samples{across}'
+                        f'column "{column}" is from {file.name}, {JOINED_IN_TIME} on straight lines between its samples{across}'
                     )
                     between |= {} if of_none is None else {column: of_none}
     if lacking:
         raise in_no_file(files, lacking[0])
     return Source(tables[:1], held, tuple(notes), tables[1:], between=between)
-
-
-def _check_in_common(first: Table, other: Table, time: str) -> None:
-    """Raises UserError where no sample of the first file lies within the time of another: all that is taken from that would be missing."""
-    stamps, own = first.columns[time], other.columns[time]
-    if len(stamps) and len(own) and not ((stamps >= own[0]) & (stamps <= own[-1])).any():
-        apart = stamps[-1] < own[0] or stamps[0] > own[-1]
-        told = "they have no time in common" if apart else f"no sample of {first.path.name} lies within"
-        expected = (
-            "files of one run"
-            if apart
-            else "files of one run, first the one with the most samples in their common time,"
-        )
-        raise UserError(
-            f'{other.path}, column "{time}": {_span(other, time)}, and {first.path.name} {_span(first, time)}: {told}; expected {expected} '
-            'for join = "time"'
-        )
-
-
-def _span(table: Table, time: str) -> str:
-    """From when to when a file goes, as dates where it has dates."""
-    ends = table.columns[time][[0, -1]]
-    if time in table.stamps and ends[0] >= DAY:
-        begin, end = (f"{datetime.fromtimestamp(float(s), UTC):%Y-%m-%d %H:%M:%S}" for s in ends)
-        return f"is from {begin} to {end}"
-    return f"is from {ends[0]:.10g} to {ends[1]:.10g}"
 
 
 def _also_across_lost(table: Table, stamps: NDArray[np.float64]) -> str:
@@ -177,8 +152,9 @@ def _what_there_is(file: Path, columns: Sequence[str], time: str, read: Read) ->
         except NoSuchColumn as error:
             if error.column == time:
                 said = (
-                    f"{error}; files that are joined in time have their time stamps in a column of one name; else give its "
-                    "position, where that is one in all of them: time = 1 for the first column of each"
+                    f"{error}; files that are joined in time have their time stamps in a column of one name; else give this file's: "
+                    f"{in_clocks(file.name, column='…')}; or its position, where that is one in all of them: time = 1 for the first "
+                    "column of each"
                 )
                 raise NoSuchColumn(said, time) from None
             if error.column not in wanted:

@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 from greybox_torch.data.angles import has_angle
+from greybox_torch.data.gallons import with_gallons
 from greybox_torch.data.unit_letters import in_small_letters
 from greybox_torch.errors import UserError, did_you_mean
 
@@ -25,7 +26,7 @@ _POWER = re.compile(r"(?<=[A-Za-zµ])(-?[1-4])(?![\w.])")
 USUAL = (
     "rpm", "rad/s", "deg/s", "rev/s", "rad", "deg", "degC", "degF", "K", "Hz", "kHz", "W", "kW", "MW", "J", "kJ", "N", "kN", "N m", "kN m",
     "Pa", "hPa", "kPa", "MPa", "bar", "mbar", "psi", "V", "mV", "kV", "A", "mA", "ohm", "m", "mm", "cm", "km", "m/s", "mm/s", "km/h",
-    "m/s^2", "kg", "s", "ms", "min", "h", "l/min", "m^3/h", "m^3/s", "l", "%",
+    "m/s^2", "kg", "s", "ms", "min", "h", "l/min", "m^3/h", "m^3/s", "lpm", "gpm", "l", "%",
 )  # fmt: skip
 """What may be meant by a unit that is none, or one of another quantity but for its capitals."""
 _DEGREES = re.compile(r"deg\s+([CF])\b")
@@ -226,7 +227,7 @@ def _written(unit: str) -> str:
 
 def _spelt(unit: str) -> str:
     """A unit as pint writes it."""
-    unit = _NAMED_TURNS.sub(lambda turns: {"min": "rpm", "s": "rps"}[turns[1]], unit)
+    unit = _NAMED_TURNS.sub(lambda turns: {"min": "rpm", "s": "rps"}[turns[1]], with_gallons(unit))
     for sign, word in _WRITTEN.items():
         unit = unit.replace(sign, word)
     return _POWER.sub(r"^\1", _DEGREES.sub(r"deg\1", unit))

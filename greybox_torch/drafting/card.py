@@ -7,26 +7,31 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from greybox_torch.data.clocks_written import clock_written
 from greybox_torch.data.gaps import Gap, pieces_around
 from greybox_torch.data.summer_time import instead_of_summer_time
+from greybox_torch.drafting.apart import apart, apart_without_a_model
 from greybox_torch.drafting.channels import Draft, wanted_of
+from greybox_torch.drafting.chosen import FEW, held_out
 from greybox_torch.drafting.clock import Clock, clock_of
-from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_further_runs, own_columns
+from greybox_torch.drafting.further_runs import guessed_units, in_toml, of_further_runs, own_clocks, own_columns
 from greybox_torch.drafting.odd_cells import missing_of, to_be_mended, where_missing_of
 from greybox_torch.drafting.one_run import perhaps_one_run
+from greybox_torch.drafting.own_units import units_of_others
 from greybox_torch.drafting.recorded import Recorded, recorded
-from greybox_torch.drafting.runs import Run, apart, fullest, names_of, runs_of
+from greybox_torch.drafting.refused import of_other_steps, why_refused
+from greybox_torch.drafting.runs import Run, fullest, names_of, runs_of
 from greybox_torch.files import toml_key, toml_text
 from greybox_torch.model import GreyBoxModel
 
 _JOIN = 'join = "time"                  # columns of all, at the time stamps of the first'
-FEW = 80
-"""Samples below which a file is not divided between estimation and validation."""
 
 
 @dataclass(frozen=True)
 class CardDraft:
-    """The card's text, and what its reader has to do: ``open`` lists what could not be guessed. ``runs`` are the files by experiment."""
+    """The card's text, and what its reader has to do: ``open`` lists what could not be guessed. ``runs`` are the files by experiment,
+    ``held_out`` says what was chosen for validation.
+    """
 
     text: str
     files: tuple[Recorded, ...]
@@ -34,6 +39,7 @@ class CardDraft:
     clock: Clock
     channels: tuple[Draft, ...]
     open: tuple[str, ...]
+    held_out: str = ""
 
 
 def draft_card(
@@ -56,7 +62,7 @@ def draft_card(
     given = None if sample_time is None else Clock(sample_time=sample_time, remark="as given")
     wanted = [] if model is None else wanted_of(model)
     clocks = [given or clock_of(file, [one.name for one in wanted]) for file in files]
-    runs = runs_of(files, clocks, model)
+    runs, of_units = units_of_others(runs_of(files, clocks, model))
     first = runs[0]
     lines = [
         f"name = {toml_text(folder.resolve().name or 'Recordings')}",
@@ -72,18 +78,22 @@ def draft_card(
     missing = [f"[channels] {draft.name}: {draft.remark}" for draft in first.table.channels if draft.column is None]
     if missing:  # what there is to them may be in a column that could not be read, or in another file
         missing += [fault for file in first.files for fault in _faults(file)]
-    parted = apart(runs) if model is not None else ""
+    parted = apart(runs) if model is not None else apart_without_a_model(runs)
     if model is not None and not (parted and missing):  # what the first lacks goes for all that are to be joined
         missing += of_further_runs(runs)
-    missing += filter(None, [parted])
+    missing += [*of_units, *filter(None, [parted])]
     missing += to_be_mended(runs)
     missing[:0] = [f"time: {clock.broken}" for clock in clocks if clock.broken]
+    missing += of_other_steps(runs)
     if first.clock.column is None and first.clock.sample_time is None:
         missing.insert(0, f"sample_time: {first.clock.remark}")
     if what_to_do := perhaps_one_run(files, clocks, 2 if model is None else len(wanted)):
         missing.append(what_to_do)
+    text = "\n".join(lines) + "\n"
+    if all("please check" in told for told in missing):  # else it cannot be read before something is filled in
+        missing += why_refused(text, folder)
     channels = tuple(_remarked(runs, draft) for draft in first.table.channels)
-    return CardDraft("\n".join(lines) + "\n", files, runs, first.clock, channels, tuple(missing))
+    return CardDraft(text, files, runs, first.clock, channels, tuple(missing), held_out(runs))
 
 
 def _clock(clock: Clock) -> list[str]:
@@ -173,13 +183,17 @@ def _experiment(
     rows: tuple[int, int] | None,
 ) -> list[str]:
     seen = "parameters are estimated from it" if role == "estimation" else "results are judged on it"
-    files = [toml_text(Path(os.path.relpath(file.path.resolve(), folder.resolve())).as_posix()) for file in run.files]
+    seen += "; chosen as the last file" if role == "validation" and rows is None else ""
+    places = {str(f.path): Path(os.path.relpath(f.path.resolve(), folder.resolve())).as_posix() for f in run.files}
+    files = [toml_text(place) for place in places.values()]
+    clocks = [clock_written(places[file], **entry) for file, entry in own_clocks(run).items()]
     return [
         *_gap(run.clock.gap, rows or (0, run.whole.samples)),
         "[[experiment]]",
         f"name = {toml_text(name)}",
         f"file = {files[0] if len(files) == 1 else '[' + ', '.join(files) + ']'}",
         *([_JOIN] if len(files) > 1 else []),
+        *([f"clocks = {{ {', '.join(clocks)} }}"] if clocks else []),
         f"role = {toml_text(role)}              # {seen}",
         *([f"rows = [{rows[0]}, {rows[1]}]"] if rows else []),
         *([f"# {guessed}; please check"] if guessed else []),

@@ -150,6 +150,9 @@ def _draft(
     if channel.name in suspected and not unit:
         guess = suspected[channel.name]
         return Draft(channel.name, channel.unit, column, remark=f'its size suggests {guess}: add file_unit = "{guess}"')
+    if channel.unit and (unknown := _unknown(units.get(column, "")).strip(" ()")):
+        told = f"the file's values are {unknown}, which is not converted; please check"
+        return Draft(channel.name, channel.unit, column, remark=f"{told}; {doubt}" if doubt else told)
     return Draft(channel.name, channel.unit, column, remark=doubt)
 
 

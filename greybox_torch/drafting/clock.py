@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.column_units import without_ending
+from greybox_torch.data.counts import counts_samples
 from greybox_torch.data.gaps import Gap, longest_gap
 from greybox_torch.data.readers.time_stamps import UNDERSTOOD
 from greybox_torch.data.steps import EVEN, even_step, unevenness
@@ -21,11 +22,11 @@ from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(
     r"(^|[\W_])(t|times?|time_?stamps?|date_?times?|date_?time_?stamps?|dates?|tid|dato|zeit|zeit_?(stempel|punkt)|uhr_?zeit|datum|temps|"
-    r"horodatage|horodate|heure|fecha|hora|data_?ora|orario|tijd|tijdstip|seconds|secs?|millis|clock)($|[\W_\d])",
+    r"horodatage|horodate|heure|fecha|hora|data_?ora|orario|tijd|tijdstip|seconds|secs?|millis|clock|(?-i:ts)|epoch|unix|elapsed)($|[\W_\d])",
     re.IGNORECASE,
 )
 _STEP = re.compile(r"^(ts|dt|h|tsampl|t_s|sample_?time|sampling_?time|sample_?period|step|delta_?t)$", re.IGNORECASE)
-_RATE = re.compile(r"^(fs|f_s|rate|sample_?rate|sampling_?(rate|frequency)|frequency)$", re.IGNORECASE)
+_RATE = re.compile(r"^(fs|f_s|fps|rate|(sample|frame)_?rate|sampling_?(rate|frequency)|frequency)$", re.IGNORECASE)
 _UNITS = {
     "ns": re.compile(r"(^|[\W_])(ns|nsec|nanos\w*)($|[\W_])", re.IGNORECASE),
     "us": re.compile(r"(^|[\W_])(us|µs|usec|micros\w*)($|[\W_])", re.IGNORECASE),
@@ -66,6 +67,16 @@ class Clock:
     position: int | None = None
 
     @property
+    def seconds(self) -> float:
+        """A unit of the column in s."""
+        return SECONDS.get(self.unit, 1.0)
+
+    @property
+    def written(self) -> tuple[str | None, str, str]:
+        """What a card says of it."""
+        return self.column, self.unit, self.date
+
+    @property
     def on_card(self) -> str | int | None:
         """The column as a card names it: by its name, or by its position."""
         return self.column if self.position is None else self.position
@@ -89,6 +100,8 @@ def _without_date(file: Recorded, channels: Collection[list[str]]) -> Clock:
     rising = {name: values for name, values in file.columns.items() if _rises(values)}
     named = [name for name in rising if name in file.stamps or named_like_a_clock(name)]
     free = [name for name in rising if len(file.columns) > 1 and words(without_ending(name)) not in channels]
+    counters = [name for name in free if counts_samples(without_ending(name), rising[name])]
+    free = [name for name in free if name not in counters]
     other = [name for name in free if is_clock(rising[name]) and _comes_first(name, file)]
     for column in (*named, *other):
         return _clock(column, rising[column], file.units.get(column, ""))
@@ -99,8 +112,13 @@ def _without_date(file: Recorded, channels: Collection[list[str]]) -> Clock:
         if value > 0 and _RATE.match(last):
             return Clock(sample_time=1.0 / value, remark=f"1 / {name}, {name} = {value:g} in {file.path.name}")
     return _broken(file) or Clock(
-        remark=f"{_not_read(file)}no column rises from sample to sample, and no number is called Ts, dt or fs"
+        remark=f"{_not_read(file)}{_counting(counters)}no column rises from sample to sample, and no number is called Ts, dt or fs"
     )
+
+
+def _counting(counters: Sequence[str]) -> str:
+    """Of a column that was taken for no time as it counts samples, to go on with; else ""."""
+    return f'column "{counters[0]}" counts samples, and is no time; ' if counters else ""
 
 
 def _not_read(file: Recorded) -> str:

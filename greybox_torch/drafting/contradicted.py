@@ -22,7 +22,7 @@ from greybox_torch.files import toml_text
 
 _KNOWN = re.compile(
     "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
-    "Hz|kHz|rpm|rev|Ohm|l|L|ml"
+    "Hz|kHz|rpm|rev|Ohm|l|L|ml|lpm|US|gal|gpm"
 )
 """What is a unit in a name, and nothing else: [t], (k), (in), (est) are units as well, and hardly ever meant as such."""
 _DEGREES = re.compile(r"(?:°|deg)?\s*([CF])")

@@ -17,9 +17,21 @@ def own_columns(run: Run, first: Run) -> dict[str, dict[str, str]]:
         unit = units[draft.name].file_unit if draft.name in units else None
         if draft.column is not None and (unit is not None or draft.column != drafted.column):
             own[draft.name] = _entry(draft.column, "file_unit", unit)
-    column, unit = run.clock.column, own_unit_of_time(run, first)
-    if column is not None and (unit is not None or column != first.clock.column):
-        own["time"] = _entry(column, "unit", unit)
+    here, there, unit = run.clock, first.clock, own_unit_of_time(run, first)
+    if None not in (here.column, there.column) and (unit is not None or here.written[::2] != there.written[::2]):
+        own["time"] = _entry(str(here.column), "unit", unit) | ({"date": here.date} if here.date else {})
+    return own
+
+
+def own_clocks(run: Run) -> dict[str, dict[str, str]]:
+    """By path of further files of a run, what its `clocks` say of those whose time stamps are not called as the first one's, or not in its
+    unit.
+    """
+    own: dict[str, dict[str, str]] = {}
+    for file, clock in zip(run.files, run.clocks, strict=False):
+        if clock.written != run.clock.written and clock.column is not None:
+            more = {"unit": clock.unit} if clock.unit != run.clock.unit else {}
+            own[str(file.path)] = {"column": clock.column} | more | ({"date": clock.date} if clock.date else {})
     return own
 
 

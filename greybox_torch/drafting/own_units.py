@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,6 +41,38 @@ def own_units(run: Run, first: Run) -> dict[str, OwnUnit]:
         if own is not None:
             found[draft.name] = own
     return found
+
+
+def units_of_others(runs: Sequence[Run]) -> tuple[tuple[Run, ...], list[str]]:
+    """The runs, the first one with such units of its channels as it does not say and a further one does, if sizes of the samples agree with
+    that; and a line for each of them, to be checked, to begin with the channel.
+    """
+    first, told, drafts = runs[0], list[str](), list[Draft]()
+    for k, draft in enumerate(first.table.channels):
+        other = next((run for run in runs[1:] if _says_a_unit(draft, first, run.table.channels[k : k + 1])), None)
+        known = None if other is None else other.table.channels[k]
+        as_there = None if other is None or known is None else _converted_already(draft, first, known, other)
+        if other is None or known is None or as_there:  # then it is in the channel's unit
+            drafts.append(draft)
+            continue
+        theirs = f'"{known.column}" of {other.whole.path.name}'
+        guess = (
+            f"no unit is said, and {theirs} is in {known.file_unit}"
+            if as_there is None
+            else f"no unit is said: {known.file_unit} by its size beside that of {theirs}"
+        )
+        unit = draft.file_unit if as_there is None else known.file_unit
+        drafts.append(replace(draft, file_unit=unit, remark=f"{guess}; please check"))
+        told.append(f"[channels] {draft.name}: {guess}; please check")
+    return (replace(first, table=replace(first.table, channels=tuple(drafts))), *runs[1:]), told
+
+
+def _says_a_unit(draft: Draft, first: Run, theirs: Sequence[Draft]) -> bool:
+    """Whether the draft of a channel in another run has a unit of the file which that in the first one lacks."""
+    column = draft.column
+    if column is None or draft.file_unit or not draft.unit or first.whole.units.get(column) or unit_in(column):
+        return False
+    return any(other.name == draft.name and other.column is not None and other.file_unit for other in theirs)
 
 
 def own_unit_of_time(run: Run, first: Run) -> str | None:

@@ -9,6 +9,9 @@ from difflib import SequenceMatcher
 from itertools import combinations
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from greybox_torch.data.processing import at_times
 from greybox_torch.drafting.channels import Drafted, drafted, wanted_of
 from greybox_torch.drafting.clock import Clock
@@ -24,18 +27,33 @@ _SAME_TIME = 0.5
 class Run:
     """One experiment: ``files`` that were recorded together, the first of which has the time stamps that count.
 
-    ``whole`` has the columns of all of them at these times, ``table`` the channels that are made of them.
+    ``whole`` has the columns of all of them at these times, ``table`` the channels that are made of them. ``clock`` is that of the first,
+    ``clocks`` those of all of several.
     """
 
     files: tuple[Recorded, ...]
     whole: Recorded
     clock: Clock
     table: Drafted
+    clocks: tuple[Clock, ...] = ()
 
     @property
     def channels(self) -> set[str]:
         """Those that a column was found for."""
         return {draft.name for draft in self.table.channels if draft.column is not None}
+
+    @property
+    def dated(self) -> bool:
+        """Whether the time stamps of all files have dates or times of day."""
+        clocks = self.clocks or (self.clock,)
+        return all(clock.column in file.stamps for clock, file in zip(clocks, self.files, strict=True))
+
+    @property
+    def step(self) -> float | None:
+        """The usual step in s; None where it is not known."""
+        if self.clock.column is None:
+            return self.clock.sample_time
+        return float(np.median(np.diff(_seconds(self))))
 
     @property
     def complete(self) -> bool:
@@ -57,10 +75,12 @@ def runs_of(files: Sequence[Recorded], clocks: Sequence[Clock], model: GreyBoxMo
     by_clock: dict[tuple[str | None, str], list[Run]] = {}
     for run in (run for run in alone if run not in whole):
         by_clock.setdefault((run.clock.column, run.clock.unit), []).append(run)
-    if model is None and len(by_clock) > 1:  # then the columns are all that tells what is one signal
-        return tuple(alone)
     by_name = [run for parts in by_clock.values() for run in _of_loggers(parts, model)]
-    made = [*whole, *(_of_other_names(by_name, model) if len(by_clock) > 1 else by_name)]
+    if model is None and len(by_clock) > 1:  # then columns and names are all that tells what is one signal, and one run
+        by_name = _of_own_clocks(alone, None, named=True)
+    elif len(by_clock) > 1:
+        by_name = _of_own_clocks(_of_other_names(by_name, model), model, named=bool(whole))
+    made = [*whole, *by_name]
     return tuple(sorted(made, key=lambda run: min(files.index(file) for file in run.files)))
 
 
@@ -72,6 +92,17 @@ def _of_other_names(runs: Sequence[Run], model: GreyBoxModel | None) -> Sequence
     joined = [run for run in _of_loggers(renamed, model) if len(run.files) > 1] if renamed else []
     used = {file.path for run in joined for file in run.files}
     return [*joined, *(run for run in runs if run.files[0].path not in used)]
+
+
+def _of_own_clocks(runs: Sequence[Run], model: GreyBoxModel | None, *, named: bool) -> Sequence[Run]:
+    """The runs that the single files among these make up whose time stamps have another name or unit in each; with ``named``, if they
+    have dates, or the names of their files a word in common: beside files that have all channels, others may lack some.
+    """
+    single = [run for run in runs if len(run.files) == 1 and run.clock.column is not None]
+    made = _of_loggers(single, model) if single else []
+    if named and not all(run.dated or _shared([file.path for file in run.files]) for run in made):
+        return runs
+    return [*made, *(run for run in runs if run not in single)]
 
 
 def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Run]:
@@ -94,21 +125,6 @@ def _of_loggers(parts: Sequence[Run], model: GreyBoxModel | None) -> Sequence[Ru
     return [*joined, *(run for run in parts if id(run) not in used)]
 
 
-def apart(runs: Sequence[Run]) -> str:
-    """What to do where files that were not joined have different channels of the model, of which none can be simulated; else ""."""
-    maybe_whole = [run for run in runs if run.complete or len(run.signals) == len(run.table.channels)]
-    first, *others = [run for run in runs if run not in maybe_whole] or runs[:1]
-    for run in others:
-        if run.channels - first.channels or (run.clock.column is not None and not run.channels):
-            names = [one.files[0].path.name for one in (first, run)]
-            return (
-                f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
-                f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in one unit, in a column of one '
-                "name or at one position (time = 1 for the first of each)"
-            )
-    return ""
-
-
 def fullest(runs: Sequence[Run]) -> list[int]:
     """The runs with as many channels as any: what results can be judged on. The others may have to be left out."""
     most = max(len(run.channels) for run in runs)
@@ -126,9 +142,13 @@ def names_of(runs: Sequence[Run]) -> list[str]:
 def _common(paths: Sequence[Path]) -> str:
     if len(paths) == 1:
         return paths[0].stem
+    return "_".join(_shared(paths)) or paths[0].stem
+
+
+def _shared(paths: Sequence[Path]) -> list[str]:
+    """The words that all names have in common."""
     words = [re.findall(r"[^\W_]+", path.stem) for path in paths]
-    shared = [word for word in words[0] if all(word in other for other in words[1:])]
-    return "_".join(shared) or paths[0].stem
+    return [word for word in words[0] if all(word in other for other in words[1:])]
 
 
 def _by_logger(runs: Sequence[Run], model: GreyBoxModel | None) -> list[list[Run]]:
@@ -146,7 +166,7 @@ def _may_be_joined(loggers: Sequence[Sequence[Run]], model: GreyBoxModel | None)
     """Whether all have sound time stamps in a column, and columns that the others lack."""
     if any(run.clock.broken for of_one in loggers for run in of_one):
         return False
-    if loggers[0][0].clock.column is None:
+    if any(run.clock.column is None for of_one in loggers for run in of_one):
         return False
     pairs = list(combinations([of_one[0].signals for of_one in loggers], 2))
     if model is None:
@@ -159,8 +179,9 @@ def _gains(alone: Sequence[Run], joined: Run) -> bool:
     are of one time, whether none has all.
     """
     most = max(len(run.channels) for run in alone)
-    dated = all(run.clock.column in run.whole.stamps for run in alone)
-    none_twice = dated and not any(one.signals & other.signals for one, other in combinations(alone, 2))
+    none_twice = all(run.dated for run in alone) and not any(
+        one.signals & other.signals for one, other in combinations(alone, 2)
+    )
     return len(joined.channels) > most or (none_twice and most < len(joined.table.channels))
 
 
@@ -183,22 +204,28 @@ def _partner(run: Run, candidates: Sequence[Run]) -> Run | None:
 
 
 def _at_once(run: Run, other: Run) -> bool:
-    spans = [(stamps[0], stamps[-1]) for one in (run, other) for stamps in [one.whole.columns[one.clock.column or ""]]]
+    spans = [(stamps[0], stamps[-1]) for one in (run, other) for stamps in [_seconds(one)]]
     both = min(end for _, end in spans) - max(begin for begin, _ in spans)
     return both >= _SAME_TIME * min(end - begin for begin, end in spans)
 
 
+def _seconds(run: Run) -> NDArray[np.float64]:
+    """The time stamps (N,) of a run of one file, in s."""
+    return run.whole.columns[run.clock.column or ""] * run.clock.seconds
+
+
 def _joined(runs: Sequence[Run], model: GreyBoxModel | None) -> Run:
     """One run of several files, in which a column is that of the first file that has it, as joining reads it."""
-    first, clock = runs[0].whole, runs[0].clock
-    name = clock.column or ""
+    first, clock, times = runs[0].whole, runs[0].clock, _seconds(runs[0])
     columns, units = {}, {}
     for run in runs:
-        stamps = run.whole.columns[name]
-        new = {c: values for c, values in run.whole.columns.items() if c not in columns}
-        columns |= {c: at_times(first.columns[name], stamps, values) for c, values in new.items()}
+        kept = columns if run is runs[0] else {*columns, run.clock.column}
+        new = {c: values for c, values in run.whole.columns.items() if c not in kept}
+        columns |= {
+            c: values if run is runs[0] else at_times(times, _seconds(run), values) for c, values in new.items()
+        }
         units = {**run.whole.units, **units}
     files = tuple(run.files[0] for run in runs)
     faults = {column: fault for file in files for column, fault in file.faults.items()}
     whole = replace(first, columns=columns, units=units, faults=faults)
-    return Run(files, whole, clock, drafted(whole, clock, model))
+    return Run(files, whole, clock, drafted(whole, clock, model), tuple(run.clock for run in runs))

@@ -65,9 +65,13 @@ def test_one_name_stays_a_name(tmp_path: Path) -> None:
     assert 'time = "Zeit"' in gt.card(two_loggers(tmp_path, "Zeit"), Axis()).text
 
 
-def test_at_other_positions_what_to_do_is_said(tmp_path: Path) -> None:
+def test_at_other_positions_each_file_has_a_clock_of_its_own(tmp_path: Path) -> None:
+    """Seen: an experiment of each, one for estimation and the other for validation."""
     card = gt.card(two_loggers(tmp_path, "time", last=True), Axis())
-    assert any("at one position (time = 1 for the first of each)" in line for line in card.open)
+    assert not card.open and 'clocks = { "scale_A.csv" = { column = "time" } }' in card.text
+    card.save()
+    data = gt.load_dataset(tmp_path / "dataset.toml")
+    assert [(r.name, r.role) for r in data.recordings] == [("A", "estimation"), ("B", "validation")]
 
 
 def test_a_name_that_one_of_the_files_lacks_is_told_with_what_to_write(tmp_path: Path) -> None:
