@@ -61,6 +61,11 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
             if np.isnan(values).all():
                 others = [r for r in recordings if not np.isnan(r.signals[channel]).all()]
                 advice = f"; {left_out(channel)}" if others and path is not None else ""
+                if recording.name.removesuffix(HELD_OUT) in {r.name for r in others} - {recording.name}:
+                    advice = (
+                        '; it is the last quarter, which is held out where no experiment has the role "validation": give one that role, '
+                        "or take the rows in which the channel is measured"
+                    )
                 # rows of the first file, which need not be the one that has the column
                 of = "" if recording.source is None else f" of {recording.source}"
                 of += f" with {listed([file.name for file in recording.further])}" if recording.further else ""
