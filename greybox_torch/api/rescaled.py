@@ -8,13 +8,14 @@ within less than that on most cards, do.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from greybox_torch.api.short_refits import (
     AS_GOOD,
     AS_IT_IS,
+    FOLLOWS,
     REFITTED,
     Asked,
     Change,
@@ -26,6 +27,7 @@ from greybox_torch.api.short_refits import (
 from greybox_torch.data import DataSet
 from greybox_torch.data.units import conversion, per_minute
 from greybox_torch.diagnosis.digits import digits
+from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
@@ -68,6 +70,37 @@ def rescaled(data: DataSet, model: GreyBoxModel, simulator: Simulator, achieved:
     # in the order of what the start values say
     told, rest = next(pair for pair in zip(tried, lefts, strict=True) if pair[1] <= AS_GOOD * min(lefts))
     return asked_of_scale(told, left, rest, data)
+
+
+def rescaled_output(
+    data: DataSet,
+    model: GreyBoxModel,
+    simulator: Simulator,
+    scores: Sequence[Score],
+    values: Mapping[str, float],
+) -> Asked | None:
+    """The question for an output that the estimate does not follow while it follows others; else None.
+
+    Start values that simulate badly tell nothing of a scale: the larger an output is read, the smaller their error is beside it. An
+    estimate that the other outputs have led to does.
+
+    Args:
+        scores: of the estimate.
+        values: its parameters.
+    """
+    judged = held_out_scores(scores)
+    fits = {one.name: mean_fit([s for s in judged if s.output == one.name]) for one in model.outputs}
+    lost = {name for name, fit in fits.items() if not fit >= FOLLOWS}
+    short, achieved = beginnings(data), mean_fit(judged)
+    if short is None or not lost or len(lost) == len(fits) or not np.isfinite(achieved):
+        return None
+    of_one = [change for change in _changes(model) if len(change.read) == 1 and lost.issuperset(change.read)]
+    after = [fit_after(short, model, simulator, change, refitted=False, values=values) for change in of_one]
+    if not after or max(after) <= achieved:
+        return None
+    best = of_one[int(np.argmax(after))]
+    found = far_better(short, model, simulator, [best], achieved)
+    return None if found is None else asked_of_scale(best, found[0], found[1][0], data)
 
 
 def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also: str = "") -> Asked:

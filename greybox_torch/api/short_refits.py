@@ -94,18 +94,26 @@ def beginnings(data: DataSet) -> DataSet | None:
 
 
 def fit_after(
-    data: DataSet, model: GreyBoxModel, simulator: Simulator, change: Change, *, refitted: bool = True
+    data: DataSet,
+    model: GreyBoxModel,
+    simulator: Simulator,
+    change: Change,
+    *,
+    refitted: bool = True,
+    values: Mapping[str, float] | None = None,
 ) -> float:
     """The mean fit (%) on the validation experiments after a change, of a short refit or of the start values; -inf where none simulates.
 
     That of the start values after a change of one experiment is told of that experiment.
+
+    Args:
+        values: of parameters, in the place of the start values where nothing is refitted.
     """
     runs = [change.of(recording) for recording in data.recordings]
     judged = [recording for recording in runs if recording.role == "validation"] or runs
     if change.only and not refitted:
         judged = [recording for recording in runs if recording.name in change.only]
     try:
-        values = None
         if refitted:
             estimated = [recording for recording in runs if recording.role == "estimation"]
             problem = make_problem(data, model, estimated)

@@ -9,8 +9,16 @@ from greybox_torch.checking.finding import Finding
 from greybox_torch.checking.source import Source
 from greybox_torch.model import GreyBoxModel, Signals
 from greybox_torch.model.check import unknown_signals
+from greybox_torch.model.misdeclared import misdeclared
 
 _METHODS = {name for name in dir(Signals) if not name.startswith("_")}
+
+
+def not_declared(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:
+    """Findings for lists of a class that are none, or hold what is no declaration."""
+    for found, write in misdeclared(made):
+        line = source.line_of(f"{write.partition(' ')[0]} =", 1)
+        yield Finding("error", "declaration", found, write, source.file, line or source.line)
 
 
 def missing_methods(made: type[GreyBoxModel], source: Source) -> Iterator[Finding]:

@@ -6,7 +6,14 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 from greybox_torch.checking.code import untraceable
-from greybox_torch.checking.declarations import declared_twice, missing_methods, no_ports, port_signals, unusable_names
+from greybox_torch.checking.declarations import (
+    declared_twice,
+    missing_methods,
+    no_ports,
+    not_declared,
+    port_signals,
+    unusable_names,
+)
 from greybox_torch.checking.effects import without_effect
 from greybox_torch.checking.equations import compiled, fails, told
 from greybox_torch.checking.finding import Finding, in_order
@@ -48,6 +55,8 @@ def examine(
     """
     made = given if isinstance(given, type) else type(given)
     source = source_of(made)
+    if odd := list(not_declared(made, source)):  # nothing else can be read
+        return Examination(made, None, in_order(odd))
     found = [*missing_methods(made, source), *unusable_names(made, source), *port_signals(made, source)]
     code, names = _read(made, source)
     found += names

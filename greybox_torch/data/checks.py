@@ -26,6 +26,10 @@ Place = Callable[[int], str]
 """Where sample k stands: the beginning of a message about it."""
 
 
+class NotANumber(UserError):
+    """A column holds what is no number."""
+
+
 def check_finite(values: NDArray[np.float64], place: Place) -> None:
     """Raises UserError where one of the values (N,) is infinite, or so large that its square is no number. NaN is a missing sample."""
     wrong = np.flatnonzero(np.abs(values) > LARGEST)
@@ -72,7 +76,8 @@ def _begins_anew(time: NDArray[np.float64], later: int) -> str:
 def check_length(length: int, place: str) -> None:
     """Raises UserError where a recording is too short to say anything."""
     if length < FEWEST_SAMPLES:
-        raise UserError(f"{place}: has {length} samples; expected at least {FEWEST_SAMPLES}")
+        samples = "sample" if length == 1 else "samples"
+        raise UserError(f"{place}: has {length} {samples}; expected at least {FEWEST_SAMPLES}")
 
 
 def numbers(values: Any, place: str) -> NDArray[np.float64]:
@@ -85,7 +90,7 @@ def numbers(values: Any, place: str) -> NDArray[np.float64]:
     if found.dtype.kind == "O":
         found = _from_objects(found, place)
     if found.dtype.kind not in "fiub":
-        raise UserError(
+        raise NotANumber(
             f"{place}: holds {KINDS.get(found.dtype.kind, str(found.dtype))}; expected real numbers (NaN where a sample is missing)"
         )
     if found.ndim != 1:
@@ -114,7 +119,7 @@ def _from_objects(values: NDArray, place: str) -> NDArray[np.float64]:
             found[index] = np.nan
             continue
         if isinstance(value, str | bytes | complex) or not hasattr(value, "__float__"):
-            raise UserError(f"{place}, sample {index[0]} (the first is 0): found {value!r:.40}, expected a number")
+            raise NotANumber(f"{place}, sample {index[0]} (the first is 0): found {value!r:.40}, expected a number")
         try:
             found[index] = float(value)
         except (TypeError, ValueError, OverflowError) as error:

@@ -154,7 +154,8 @@ class DataSet:
 
 
 def _checked_recordings(recordings: Iterable[Recording]) -> tuple[Recording, ...]:
-    held = (recordings,) if isinstance(recordings, Recording) else tuple(recordings)
+    one = isinstance(recordings, Recording | Mapping | str)  # of a table of arrays the names alone would be read
+    held: tuple[Any, ...] = (recordings,) if one else tuple(recordings)
     for recording in held:
         if not isinstance(recording, Recording):
             raise UserError(

@@ -67,6 +67,11 @@ def check_no_channel_is_empty(recordings: Sequence[Recording], path: Path | None
                     advice += (
                         f"; where the stamps of {names} are in another unit, or begin at another zero, `clocks` says so"
                     )
+                if recording.name.removesuffix(HELD_OUT) in {r.name for r in others} - {recording.name}:
+                    advice = (
+                        '; it is the last quarter, which is held out where no experiment has the role "validation": give one that role, '
+                        "or take the rows in which the channel is measured"
+                    )
                 # rows of the first file, which need not be the one that has the column
                 of = "" if recording.source is None else f" of {recording.source}"
                 of += f" with {listed([file.name for file in recording.further])}" if recording.further else ""

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from greybox_torch.data.card import TIME
-from greybox_torch.data.checks import check_finite, check_length, check_time, numbers
+from greybox_torch.data.checks import NotANumber, check_finite, check_length, check_time, numbers
 from greybox_torch.data.readers.time_stamps import TimeStamps
 from greybox_torch.data.single_numbers import constant, is_number
 from greybox_torch.data.steps import usual_step
@@ -97,13 +97,15 @@ def samples_of_frame(
             raise UserError(f'{place}, constants: "{channel}" has a column as well; expected one of them')
         if not is_number(value):
             raise UserError(f'{place}, constants: found {_shown(value)} for "{channel}", expected a number')
-    return samples_of_arrays(
-        name,
-        {channel: _values(frame, column) for channel, column in wanted.items()} | dict(constants or {}),
-        sample_time=sample_time,
-        time=None if time is None else _values(frame, time),
-        units=units,
-    )
+    signals = {channel: _values(frame, column) for channel, column in wanted.items()} | dict(constants or {})
+    stamps = None if time is None else _values(frame, time)
+    try:
+        return samples_of_arrays(name, signals, sample_time=sample_time, time=stamps, units=units)
+    except NotANumber as error:
+        if columns is not None:
+            raise
+        advice = "every column of the frame is a channel, but where columns = {channel: column} names those to read"
+        raise UserError(f"{error}; {advice}") from None
 
 
 def _place(name: Any) -> str:

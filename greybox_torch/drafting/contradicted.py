@@ -21,8 +21,8 @@ from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
 
 _KNOWN = re.compile(
-    "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|kg|N|kN|mN|Nm|kNm|mNm|rad|mrad|deg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|"
-    "Hz|kHz|rpm|rev|Ohm|l|L|ml|lpm|US|gal|gpm"
+    "s|ms|us|µs|ns|h|m|mm|cm|km|um|µm|ft|kg|N|kN|mN|MN|kgf|lbf|Nm|kNm|mNm|MNm|Ncm|Nmm|rad|mrad|deg|cdeg|degrees|degC|degF|K|V|mV|kV|A|mA|W|kW|MW|mW|"
+    "J|kJ|Pa|hPa|kPa|MPa|bar|mbar|psi|Hz|kHz|rpm|rev|kts|knots?|Ohm|l|L|ml|lpm|US|gal|gpm"
 )
 """What is a unit in a name, and nothing else: [t], (k), (in), (est) are units as well, and hardly ever meant as such."""
 _DEGREES = re.compile(r"(?:°|deg)?\s*([CF])")
@@ -32,6 +32,17 @@ _SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC", "degF"))
 """Endings that are units whatever the card says. Of others, such as x_bar and heat_rad, only another scale is told."""
 _AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
 """Sure only if written so: speed_ma is a moving average, u_mv a manipulated variable."""
+_BESIDE = (
+    ("m/s", {"kn": "kn", "kt": "kt", "kts": "kts", "knots": "knots"}),
+    ("m/s^2", {"g": "g", "mg": "mg"}),
+    ("N m", {"Nmm": "Nmm", "Ncm": "Ncm"}),
+    ("m", {"ft": "ft"}),
+    ("rad", {"cdeg": "cdeg"}),
+)
+"""Words that are units beside such a quantity, in brackets or as the last of a name: those of boats and aircraft, whose logs have speeds
+in knots and accelerations in multiples of gravity. Elsewhere "kn" may be kN and "g" a gram."""
+_ACCELERATION = re.compile(r"(a|acc\w*|beschl\w*|a_?[xyz])([\W_\d]|$)", re.IGNORECASE)
+"""What a name begins with of which a "g" at the end is gravity and no other word."""
 _TEMPERATURE = {"[temperature]": 1.0}
 
 
@@ -125,6 +136,9 @@ def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
     The unit registry, which takes its time to load, is asked only where a letter may mean a temperature.
     """
     told = unit_in(column)
+    beside = _told_beside(column, told, said)
+    if beside:
+        return beside, True
     if is_set_apart(column):
         degrees = _DEGREES.fullmatch(told)
         if degrees and (len(told) > 1 or _dimension(said) == _TEMPERATURE):
@@ -140,6 +154,18 @@ def _unit_of(column: str, columns: set[str], said: str) -> tuple[str, bool]:
         phases = {other for other in columns if re.fullmatch(re.escape(stem + separator) + "[A-Za-z]", other)}
         return (last, True) if len(phases) == 1 else ("", False)
     return told, told in _SURE or last in _AS_WRITTEN
+
+
+def _told_beside(column: str, told: str, said: str) -> str:
+    """The unit that the last word of a name is beside what the card says, of those of one quantity; "" where there is none."""
+    set_apart = is_set_apart(column)
+    stem, _, last = parts_of(column)
+    word = told if set_apart else last
+    for unit, words in _BESIDE:
+        if word in words and _dimension(said) == _dimension(unit) and (unit != "rad" or is_angle(said)):
+            alone = word == "g" and not set_apart
+            return words[word] if not alone or _ACCELERATION.match(stem) else ""
+    return ""
 
 
 def time_in(column: str) -> str:

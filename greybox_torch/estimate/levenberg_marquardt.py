@@ -172,10 +172,14 @@ def _diagonal(hessian: np.ndarray, before: np.ndarray | None) -> np.ndarray:
 
 
 def _step(here: Quadratic, scale: np.ndarray, damping: float, lowest: np.ndarray, highest: np.ndarray) -> np.ndarray:
-    """The damped step between ``lowest`` and ``highest`` (d,), the unknowns in units of ``scale`` (d,)."""
+    """The damped step between ``lowest`` and ``highest`` (d,), the unknowns in units of ``scale`` (d,).
+
+    An unknown that moves nothing stays where it is: rounding errors, in units of its scale, would be a step without end.
+    """
     matrix = here.hessian * scale[:, None] * scale[None, :]
     matrix[np.diag_indices_from(matrix)] += damping
-    return scale * bounded_step(matrix, -here.gradient * scale, lowest / scale, highest / scale)
+    step = scale * bounded_step(matrix, -here.gradient * scale, lowest / scale, highest / scale)
+    return np.where(np.diag(here.hessian) > 0.0, step, 0.0)
 
 
 def _shortened(

@@ -12,6 +12,7 @@ from greybox_torch.keywords import names_checked
 from greybox_torch.model.constraints import parameter_scale, project
 from greybox_torch.model.declarations import Input, Output, Parameter, State
 from greybox_torch.model.force_outputs import output_asks_for_forces
+from greybox_torch.model.misdeclared import check_declarations
 from greybox_torch.model.ports import Port, actuators, sensors
 from greybox_torch.model.shown_rates import shown_rates, with_shown_rates
 from greybox_torch.model.signals import Signals
@@ -69,7 +70,7 @@ class GreyBoxModel(torch.nn.Module):
                 f"{type(self).__name__}() takes no values; expected them in set_values({{name: value}}) of the model made"
             )
         super().__init__()
-        self._check_declarations()
+        check_declarations(self, self.title)
         self._scales = {p.name: parameter_scale(p.value, *p.bounds) for p in self.declared_parameters}
         self._set_by_name: frozenset[str] = frozenset()
         self.raw = torch.nn.ParameterDict()
@@ -230,17 +231,6 @@ class GreyBoxModel(torch.nn.Module):
         xs = Signals("state", {s.name: x.select(0, i) for i, s in enumerate(self.states)})
         us = Signals("input", {s.name: u.select(0, i) for i, s in enumerate(self.inputs)})
         return xs, us
-
-    def _check_declarations(self) -> None:
-        for kind in ("states", "outputs"):
-            if not getattr(self, kind):
-                raise UserError(f"model {self.title}: '{kind}' is empty, expected at least one")
-        for kind in ("states", "inputs", "outputs", "declared_parameters", "ports"):
-            names = [item.name for item in getattr(self, kind)]
-            twice = sorted({n for n in names if names.count(n) > 1})
-            if twice:
-                what = kind.removeprefix("declared_")
-                raise UserError(f"model {self.title}: '{what}' names {', '.join(twice)} twice")
 
 
 def _key(name: str) -> str:

@@ -46,5 +46,5 @@ def print_table(
 
 
 def number(value: float, digits: int = 5) -> str:
-    """So many significant digits."""
-    return f"{value:.{digits}g}"
+    """So many significant digits; a whole number, such as a count of samples, in full."""
+    return str(value) if isinstance(value, int) else f"{value:.{digits}g}"

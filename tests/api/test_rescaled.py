@@ -96,3 +96,48 @@ def test_factors_of_times_and_angles_are_tried_where_the_unit_has_them() -> None
     )
     assert told[np.pi / 30].endswith("With values 9.55 times smaller (rpm and rad/s differ by that)")
     assert told[1 / 60].endswith("With values 60 times smaller (s and min differ by that)")
+
+
+class Drive(gt.GreyBoxModel):
+    """A motor behind a spring, with the spring's torque measured."""
+
+    states = [gt.State("a", "rad"), gt.State("w", "rad/s")]
+    inputs = [gt.Input("torque", "N m")]
+    outputs = [gt.Output("w", "rad/s"), gt.Output("a", "rad"), gt.Output("spring", "N m")]
+    parameters = [
+        gt.Parameter("J", 10.0, unit="kg m^2", lower=1e-6),
+        gt.Parameter("k", 0.4, unit="N m/rad", lower=0.0),
+        gt.Parameter("b", 0.01, unit="N m s/rad", lower=0.0),
+    ]
+    ports = [gt.Body("rotor", speed="w", position="a")]
+
+    def derivative(self, x, u, p, port):
+        return {"a": x.w, "w": (u.torque - p.k * x.a - p.b * x.w + port.rotor) / p.J}
+
+    def output(self, x, u, p):
+        return {"w": x.w, "a": x.a, "spring": p.k * x.a}
+
+
+def bench(seed: int, role: str) -> gt.Recording:
+    """The drive with dry friction that the model lacks, and the spring's torque in N mm."""
+    draw = np.random.default_rng(seed)
+    torque = np.repeat(draw.uniform(-1.0, 1.0, 20), 40)
+    a, w, rows = 0.0, 0.0, []
+    for u in torque:
+        rows.append((w, a))
+        for _ in range(5):
+            w += 0.002 * (u - 3.0 * a - 0.15 * w - 0.05 * np.tanh(w / 0.02)) / 0.1
+            a += 0.002 * w
+    speed, angle = np.array(rows).T + 1e-3 * draw.normal(size=(2, 800))
+    signals = {"torque": torque, "w": speed, "a": angle, "spring": 3000.0 * angle}
+    units = {"torque": "N m", "w": "rad/s", "a": "rad", "spring": "N m"}
+    return gt.Recording.from_arrays(f"run {seed}", signals, sample_time=0.01, units=units, role=role)
+
+
+def test_an_output_that_is_lost_is_asked_by_what_the_others_lead_to() -> None:
+    """Seen: an encoder without its gear of 100, and a torque in N mm, beside start values far off: "far better with none of these"."""
+    found = gt.fit(Drive(), gt.DataSet([bench(1, "estimation"), bench(2, "validation")]))
+    assert found.question is not None
+    assert found.question.startswith(
+        "Is the scale of spring right? With values 1000 times smaller, a short refit reaches"
+    )

@@ -98,3 +98,18 @@ def test_what_to_write_of_an_experiments_own_column(tmp_path: Path) -> None:
     assert not [one for one in data_warnings(mended, None) if "turn" in one.found]
     first = mended.recordings[0].signals["q"]
     np.testing.assert_allclose(first - first[0], (ANGLE - ANGLE[0])[: len(first)], atol=1e-3)
+
+
+@pytest.mark.parametrize("entry", ['column = "deg", file_unit = "deg"', 'expr = "radians(unwrap(deg, 360))"'])
+def test_a_slower_file_that_is_joined_in_time(tmp_path: Path, entry: str) -> None:
+    """Seen: a boat's heading, unwrapped on the card, with the advice to write unwrap(radians(unwrap(…)), 2 * pi), and so on without end."""
+    degrees = np.degrees(ANGLE) % 360.0
+    stamps, slow = TIME.tolist(), list(zip(TIME.tolist(), degrees.tolist(), strict=True))[::10]
+    (tmp_path / "in.csv").write_text("\n".join(["t,u", *(f"{t:.3f},{k % 7}" for k, t in enumerate(stamps))]))
+    (tmp_path / "slow.csv").write_text("\n".join(["t,deg", *(f"{t:.3f},{q:.6f}" for t, q in slow)]))
+    channels = f'u = {{ column = "u", unit = "V" }}\nq = {{ {entry}, unit = "rad" }}\n'
+    run = '[[experiment]]\nname = "run"\nfile = ["in.csv", "slow.csv"]\njoin = "time"\nrole = "estimation"\n'
+    card = tmp_path / "dataset.toml"
+    card.write_text(f'time = "t"\n[channels]\n{channels}{run}')
+    one, *_ = [one for one in data_warnings(load_dataset(card), None) if "turn" in one.found]
+    assert one.write.startswith("the turns added up in the file that is joined") and "comes too late" in one.write

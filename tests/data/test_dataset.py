@@ -103,6 +103,12 @@ def test_parameters_in_each_of_their_ways() -> None:
             {},
             'recording "a (held out)", channel "speed": all 5 samples are',
         ),
+        (
+            [run("a", speed=np.append(np.ones(15), [np.nan] * 5))],
+            {},
+            'it is the last quarter, which is held out where no experiment has the role "validation": give one that role',
+        ),
+        ({"speed": np.ones(20)}, {}, "recordings: found an object of type dict, expected recordings"),
         ([run("a")], {"hold": "zho"}, 'hold: found \'zho\', expected "zoh" or "foh"'),
         ([run("a")], {"name": ""}, "DataSet, name: found ''"),
         ([run("a")], {"parameters": {"J": "x"}}, 'DataSet, parameters, J: value: found "x", expected a number'),
@@ -111,7 +117,7 @@ def test_parameters_in_each_of_their_ways() -> None:
         ([run("a")], {"initial": {"speed": float("inf")}}, "DataSet, initial, speed: value: found Infinity"),
     ],
 )
-def test_what_can_be_wrong(recordings: list[Any], changes: dict[str, Any], message: str) -> None:
+def test_what_can_be_wrong(recordings: Any, changes: dict[str, Any], message: str) -> None:
     with pytest.raises(UserError) as error:
         DataSet(recordings, **changes)
     assert message in str(error.value)

@@ -101,3 +101,15 @@ def test_dates_as_text(table: Callable[[dict[str, Any]], Any]) -> None:
         UserError, match=r"time, sample 3 \(the first is 0\): found 'soon': expected a time stamp like 2026"
     ):
         Recording.from_dataframe("steps", table({"t": [*dates[:3], "soon", *dates[4:]], "speed": Y}), time="t")
+
+
+def test_a_column_of_text_that_is_no_channel(table: Callable[[dict[str, Any]], Any]) -> None:
+    frame = table({"speed": Y, "phase": ["warm"] * N})
+    with pytest.raises(
+        UserError, match=r'channel "phase".*; every column of the frame is a channel, but where columns = '
+    ):
+        Recording.from_dataframe("steps", frame, sample_time=1.0)
+    found = Recording.from_dataframe("steps", frame, sample_time=1.0, columns={"speed": "speed"})
+    assert list(found.signals) == ["speed"]
+    with pytest.raises(UserError, match=r"(a number|missing\))$"):
+        Recording.from_dataframe("steps", frame, sample_time=1.0, columns={"speed": "phase"})

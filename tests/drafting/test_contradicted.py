@@ -63,6 +63,19 @@ TOLD = {
     'a = { column = "Strom in A", unit = "A", file_unit = "mA" }': ("A", "mA"),
     'a = { column = "Strom/A", unit = "mA" }': ("A", "mA"),
     'a = { column = "LI101 mm", unit = "m" }': ("mm", "m"),
+    'a = { column = "SpringTorque [Nmm]", unit = "N m" }': ("Nmm", "N m"),
+    'a = { column = "M_Nmm", unit = "N m" }': ("Nmm", "N m"),
+    'a = { column = "M (Ncm)", unit = "N m" }': ("Ncm", "N m"),
+    'a = { column = "M [kgf cm]", unit = "N m" }': ("kgf cm", "N m"),
+    'a = { column = "F [kgf]", unit = "N" }': ("kgf", "N"),
+    'a = { column = "speed_kn", unit = "m/s" }': ("kn", "m/s"),
+    'a = { column = "v [kts]", unit = "m/s" }': ("kts", "m/s"),
+    'a = { column = "v [kn]", unit = "m/s" }': ("kn", "m/s"),
+    'a = { column = "alt_ft", unit = "m" }': ("ft", "m"),
+    'a = { column = "climb [ft/min]", unit = "m/s" }': ("ft/min", "m/s"),
+    'a = { column = "yaw_cdeg", unit = "rad" }': ("cdeg", "rad"),
+    'a = { column = "accel_x_g", unit = "m/s^2" }': ("g", "m/s^2"),
+    'a = { column = "a [mg]", unit = "m/s^2" }': ("mg", "m/s^2"),
 }
 SILENT = [
     'a = { column = "pressure in A", unit = "bar" }',  # the chamber
@@ -99,7 +112,12 @@ SILENT = [
     'a = { column = "u_V", unit = "V" }',
     'a = { column = "flow_in", unit = "m^3/s" }',
     'a = { column = "u_cm", unit = "V" }',  # common mode
-    'a = { column = "v_kn", unit = "m/s" }',  # knots, which nobody would guess
+    'a = { column = "force_kn", unit = "m" }',
+    'a = { column = "m [g]", unit = "rad" }',
+    'a = { column = "a_x_g", unit = "rad/s" }',
+    'a = { column = "v_g", unit = "m/s^2" }',
+    'a = { column = "accel_x_g", unit = "m/s^2", file_unit = "g" }',
+    'a = { column = "flow_ft", unit = "m^3/s" }',
     'a = { column = "force_mn", unit = "N" }',
     'a = { column = "u(t)", unit = "V" }',
     'a = { column = "flow (in)", unit = "m^3/s" }',

@@ -130,3 +130,15 @@ def test_unknown_that_does_not_matter() -> None:
 def test_a_gain_beyond_all_numbers_is_no_warning() -> None:
     """Seen: "RuntimeWarning: overflow encountered in scalar divide" of a simulation from Python."""
     assert _part_of(1e10, 1e-300) == np.inf and _part_of(1.0, 2.0) == 0.5
+
+
+def test_an_unknown_that_moves_nothing_stays_where_it_is() -> None:
+    """Seen: the heading of a boat without a compass, on which nothing depends, was estimated at -5e86 rad by rounding errors."""
+    rng = np.random.default_rng(0)
+    a, b = rng.standard_normal((30, 6)), rng.standard_normal(30)
+    a[:, 2] = 0.0
+    bend = of_residuals(lambda z: a @ z + 0.1 * (a @ z) ** 2 - b, lambda z: a * (1.0 + 0.2 * (a @ z))[:, None])
+    found = minimise(bend, np.full(6, 0.25), np.full(6, -np.inf), np.full(6, np.inf))
+    assert found is not None
+    assert found.point[2] == 0.25
+    assert (found.point[[0, 1, 3, 4, 5]] != 0.25).all()
