@@ -18,12 +18,6 @@ from greybox_torch.errors import UserError
 from greybox_torch.files import toml_key
 from greybox_torch.in_unit import in_unit
 
-IN_THE_FILE = (
-    "the turns added up in the file that is joined (numpy.unwrap of the column, with period = a whole turn), or that file first in "
-    "file = […]; unwrap() on the card comes too late, as straight lines between that file's samples cross each jump"
-)
-"""What to do with a slower file of join = "time": its column is on the time stamps of the first before an expression sees it."""
-
 
 @dataclass(frozen=True)
 class WrappedChannel(InASentence):
@@ -58,16 +52,12 @@ def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
             period, jumps = turn_within(values[known], unit)
             if len(jumps):
                 seconds = float(recording.time[known[jumps[0] + 1]] - recording.time[0])
-                write = _write(data, recording.name, name, period, joined=name in recording.between)
+                write = _write(data, recording.name, name, period)
                 yield WrappedChannel(recording.name, name, period, unit, len(jumps), seconds, write)
 
 
-def _write(data: DataSet, experiment: str, name: str, period: float, *, joined: bool) -> str:
-    """What to write on the card, as far as there is one; else what to do with the array.
-
-    Args:
-        joined: whether the channel runs on straight lines between the samples of a slower file or column.
-    """
+def _write(data: DataSet, experiment: str, name: str, period: float) -> str:
+    """What to write on the card, as far as there is one; else what to do with the array."""
     try:
         card = None if data.path is None else read_card(data.path)
         here = [e for e in card.experiment if e.name == experiment.removesuffix(HELD_OUT)] if card else []
@@ -78,8 +68,6 @@ def _write(data: DataSet, experiment: str, name: str, period: float, *, joined: 
         factor = entry.scale if entry.file_unit is None else conversion(entry.file_unit, entry.unit, "")[0]
     except UserError:  # the card was replaced meanwhile
         return "the turns added up: expr = 'unwrap(column, period)'"
-    if here[0].join == "time" and joined:
-        return IN_THE_FILE
     column = entry.column or "column"
     source = entry.expr or (column if column.isidentifier() else f'col("{column}")')
     call, turn = f"unwrap({source}, {_number(period / abs(factor))})", TURNS.get(entry.unit, 0.0)

@@ -8,7 +8,8 @@ from __future__ import annotations
 import ast
 import operator
 import warnings
-from collections.abc import Callable, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -57,6 +58,22 @@ class Expression:
         """The columns that it needs."""
         return (self.tree,) if isinstance(self.tree, str) else tuple(dict.fromkeys(_columns(self.tree)))
 
+    @cached_property
+    def turns(self) -> dict[str, float]:
+        """The columns of which it needs nothing but the turns added up, and a turn in the unit of each: 360 of
+        ``unwrap(radians(heading), 2 * pi)``.
+        """
+        if isinstance(self.tree, str):
+            return {}
+        found, needed = {}, Counter(_columns(self.tree))
+        for call in ast.walk(self.tree):
+            if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id == "unwrap":
+                inside = Counter(_columns(call.args[0]))
+                slopes = {column: _slope(call.args[0], column) for column in inside if len(inside) == 1}
+                period = float(_value(call.args[1], {}))
+                found |= {c: period / abs(k) for c, k in slopes.items() if k and inside[c] == needed[c]}
+        return found
+
     def of(self, columns: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64]:
         """Its value (N,) where the columns (N,) are those given."""
         if isinstance(self.tree, str):
@@ -64,6 +81,15 @@ class Expression:
         length = len(columns[self.columns[0]])
         with np.errstate(all="ignore"):
             return np.broadcast_to(np.asarray(_value(self.tree, columns), dtype=np.float64), (length,)).copy()
+
+
+def turns_of(formulas: Iterable[Expression]) -> dict[str, float]:
+    """The columns of which no formula needs anything but the turns added up, and a turn in the unit of each."""
+    found: dict[str, set[float]] = {}
+    for formula in formulas:
+        for column in formula.columns:
+            found.setdefault(column, set()).add(formula.turns.get(column, 0.0))
+    return {column: min(turns) for column, turns in found.items() if len(turns) == 1 and min(turns) > 0.0}
 
 
 def parse_expression(text: str) -> Expression:
@@ -124,6 +150,14 @@ def _check_period(tree: ast.expr) -> None:
         raise ValueError(
             f"unwrap by {ast.unparse(tree):.60}; expected the period as a number above zero, such as 4096 or 2 * pi"
         )
+
+
+def _slope(tree: ast.expr, column: str) -> float:
+    """How much it grows with a column, its only one; zero where it is no straight line over that."""
+    with np.errstate(all="ignore"):
+        first, middle, last = (float(_value(tree, {column: np.array(at)})) for at in (0.0, 1.0, 2.0))
+    straight = np.isclose(last - middle, middle - first, rtol=1e-9, atol=0.0)
+    return middle - first if straight else 0.0
 
 
 def _dotted(tree: ast.expr) -> str:

@@ -19,7 +19,7 @@ from greybox_torch.data.column_units import unit_in
 from greybox_torch.data.common_time import check_common_time
 from greybox_torch.data.dataset import DataSet
 from greybox_torch.data.error_values import without_error_values
-from greybox_torch.data.expression import Expression
+from greybox_torch.data.expression import Expression, turns_of
 from greybox_torch.data.file_clocks import with_clocks
 from greybox_torch.data.file_units import check_unit_of_time, check_units, factor_of, in_unit
 from greybox_torch.data.gaps import longest_gap, without_gaps
@@ -84,7 +84,8 @@ def _read_recording(path: Path, card: Card, experiment: ExperimentEntry, read: R
     with asked_for(place, formulas, clocks, others, read):
         dated = with_clocks(files, experiment, card.time, read)
         known = without_error_values(dated, card.channels, formulas)
-        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known)
+        turns = turns_of(formulas.values())
+        source = source_of(files, experiment.join, list(dict.fromkeys(needed)), clock, known, turns)
     start, stop = _rows(place, source, experiment.rows)
     check_length(stop - start, place)
     time, sample_time = _time(place, path, card, source, clock, start, stop, experiment.file)

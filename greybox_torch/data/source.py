@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from greybox_torch.data.joined_rows import joined_rows
 from greybox_torch.data.one_order import of_one_order
 from greybox_torch.data.processing import at_times, between_samples
 from greybox_torch.data.readers.table import NoSuchColumn, Table
+from greybox_torch.data.unwrapping import unwrapped
 from greybox_torch.errors import UserError
 
 Read = Callable[..., Table]
@@ -64,12 +66,21 @@ class Source:
         return (*self.tables, *self.joined, *self.beside)
 
 
-def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], time: str | None, read: Read) -> Source:
+def source_of(
+    files: Sequence[Path],
+    join: str | None,
+    columns: Sequence[str],
+    time: str | None,
+    read: Read,
+    turns: Mapping[str, float] = MappingProxyType({}),
+) -> Source:
     """The columns from the files.
 
     Args:
         join: "concatenate", "time" or "rows" where there are several.
         time: the column of time stamps; None where samples are even.
+        turns: columns whose turns are to be added up before files are joined in time, and a turn of each: straight lines between the
+            samples of a slower file would cross the jump.
 
     Raises:
         UserError: as the readers do; columns of different length; files to be joined in time where there are no time stamps; files of
@@ -97,10 +108,12 @@ def source_of(files: Sequence[Path], join: str | None, columns: Sequence[str], t
             f'{files[0]}: join = "time" needs time stamps; expected time = "<column>" at the top of the card, or, for files whose samples '
             'were taken together, join = "rows"'
         )
-    return _joined_in_time(files, columns, time, read)
+    return _joined_in_time(files, columns, time, read, turns)
 
 
-def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, read: Read) -> Source:
+def _joined_in_time(
+    files: Sequence[Path], columns: Sequence[str], time: str, read: Read, turns: Mapping[str, float]
+) -> Source:
     """Every column from the first file that has it, at the time stamps of the first file; missing where its own file has a gap."""
     lacking, read_one, held, between = [c for c in columns if c != time], [], {}, {}
     for file in files:
@@ -122,7 +135,8 @@ def _joined_in_time(files: Sequence[Path], columns: Sequence[str], time: str, re
             for column in own:
                 if column != time:
                     check_finite(own[column], lambda sample, table=table, column=column: table.place(column, sample))
-                    held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], own[column]))
+                    values = unwrapped(own[column], turns[column]) if column in turns else own[column]
+                    held[column] = np.where(unknown, np.nan, at_times(held[time], own[time], values))
                     notes.append(
                         f'column "{column}" is from {file.name}, {JOINED_IN_TIME} on straight lines between its samples{across}'
                     )

@@ -100,7 +100,10 @@ def test_what_to_write_of_an_experiments_own_column(tmp_path: Path) -> None:
     np.testing.assert_allclose(first - first[0], (ANGLE - ANGLE[0])[: len(first)], atol=1e-3)
 
 
-@pytest.mark.parametrize("entry", ['column = "deg", file_unit = "deg"', 'expr = "radians(unwrap(deg, 360))"'])
+UNWRAPPED = ["radians(unwrap(deg, 360))", "unwrap(radians(deg), 2 * pi)", "unwrap(deg, 360) * pi / 180"]
+
+
+@pytest.mark.parametrize("entry", ['column = "deg", file_unit = "deg"', *(f'expr = "{text}"' for text in UNWRAPPED)])
 def test_a_slower_file_that_is_joined_in_time(tmp_path: Path, entry: str) -> None:
     """Seen: a boat's heading, unwrapped on the card, with the advice to write unwrap(radians(unwrap(…)), 2 * pi), and so on without end."""
     degrees = np.degrees(ANGLE) % 360.0
@@ -111,5 +114,13 @@ def test_a_slower_file_that_is_joined_in_time(tmp_path: Path, entry: str) -> Non
     run = '[[experiment]]\nname = "run"\nfile = ["in.csv", "slow.csv"]\njoin = "time"\nrole = "estimation"\n'
     card = tmp_path / "dataset.toml"
     card.write_text(f'time = "t"\n[channels]\n{channels}{run}')
-    one, *_ = [one for one in data_warnings(load_dataset(card), None) if "turn" in one.found]
-    assert one.write.startswith("the turns added up in the file that is joined") and "comes too late" in one.write
+    data = load_dataset(card)
+    told = {one.write for one in data_warnings(data, None) if "turn" in one.found}
+    if "unwrap" in entry:
+        found = data.recordings[0].signals["q"]
+        moved = np.interp(TIME, TIME[::10], ANGLE[::10])[: len(found)]
+        assert not told
+        np.testing.assert_allclose(found - found[0], moved - moved[0], atol=1e-6)
+    else:
+        write = "q = { expr = 'unwrap(deg, 360)', … }, which adds up the turns, with the rest of the line as it is"
+        assert told == {write}

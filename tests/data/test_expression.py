@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from greybox_torch.data.expression import parse_expression
+from greybox_torch.data.expression import parse_expression, turns_of
 
 COLUMNS = {
     "a": np.array([1.0, 2.0, np.nan]),
@@ -117,3 +117,26 @@ def test_unwrapping_undoes_a_counter_that_begins_anew(
 def test_a_period_is_a_number_above_zero(text: str) -> None:
     with pytest.raises(ValueError, match="unwrap"):
         parse_expression(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "turns"),
+    [
+        ("unwrap(q, 4096)", {"q": 4096.0}),
+        ("unwrap(radians(q), 2 * pi) - 0.3", {"q": 360.0}),
+        ("unwrap(unwrap(q, 360) * pi / 180, 2 * pi)", {"q": 360.0}),
+        ('unwrap(1 - 2 * col("q a"), 8) + unwrap(r, 1)', {"q a": 4.0, "r": 1.0}),
+        ("unwrap(q, 360) + q", {}),
+        ("unwrap(q + r, 360)", {}),
+        ("unwrap(sin(q), 1)", {}),
+        ("q", {}),
+    ],
+)
+def test_columns_of_which_nothing_but_the_added_turns_is_needed(text: str, turns: dict[str, float]) -> None:
+    assert parse_expression(text).turns == pytest.approx(turns)
+
+
+def test_a_column_that_another_channel_needs_as_it_is_keeps_its_jumps() -> None:
+    needed = [parse_expression(text) for text in ("unwrap(q, 360)", "unwrap(r, 360)", "sin(q)", "unwrap(r, 360) / 2")]
+    assert turns_of(needed) == {"r": 360.0}
+    assert turns_of([parse_expression("unwrap(r, 360)"), parse_expression("unwrap(r, 180)")]) == {}
