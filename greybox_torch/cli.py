@@ -56,8 +56,6 @@ def greybox(
 
 
 first_steps.declare(app)
-after_diagnosis.declare(app)
-many_machines.declare(app)
 
 
 @app.command()
@@ -232,6 +230,10 @@ def train(
         ensemble=ensemble,
     )
     train.run(dataset, Options(model, out, seed, device, json), choices)
+
+
+after_diagnosis.declare(app)
+many_machines.declare(app)
 
 
 def main() -> None:

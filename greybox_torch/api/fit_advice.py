@@ -17,6 +17,9 @@ WORSE = 1.0
 FAR_LARGER = 2.0
 """Times the median error in the others from which an experiment's is no matter of how little moved in it."""
 
+HARDLY = 2.0
+"""Fit of an output in % up to which it is hardly simulated better than by a constant."""
+
 DIAGNOSE = "`greybox diagnose` says what."
 
 
@@ -48,7 +51,7 @@ def fit_advice(scores: Scores, begun: str) -> str | None:
 
 
 def lost_outputs(scores: Scores) -> str | None:
-    """A sentence where outputs are simulated no better than a constant would, and a mean fit above zero hides it; else None.
+    """A sentence where outputs are simulated hardly better than a constant would, and a far higher mean fit hides it; else None.
 
     Arguments as for :func:`fit_advice`.
     """
@@ -56,13 +59,14 @@ def lost_outputs(scores: Scores) -> str | None:
     fits = {
         name: mean_fit([s for s in judging if s.output == name]) for name in dict.fromkeys(s.output for s in judging)
     }
-    lost = [name for name, fit in fits.items() if np.isfinite(fit) and fit <= 0.0]
-    if not lost or not mean_fit(judging) > 0.0:
+    lost = [name for name, fit in fits.items() if np.isfinite(fit) and fit <= HARDLY]
+    if not lost or len(lost) == len(fits) or not mean_fit(judging) > 0.0:
         return None
     told = listed([f"{name} ({fits[name]:.3g} %)" for name in lost])
     it, its = ("it", "its") if len(lost) == 1 else ("they", "their")
+    how = "no" if max(fits[name] for name in lost) <= 0.0 else "hardly"
     return (
-        f"{told} {'is' if len(lost) == 1 else 'are'} simulated no better than a constant would, which the mean fit of "
+        f"{told} {'is' if len(lost) == 1 else 'are'} simulated {how} better than a constant would, which the mean fit of "
         f"{mean_fit(judging):.3g} % hides: {its} column, sign, scale or unit on the card may be wrong, or that of what drives {it}, or the "
         f"model lacks something there. {DIAGNOSE}"
     )

@@ -75,6 +75,8 @@ def test_an_output_that_is_lost_behind_a_good_mean_is_told() -> None:
     assert "the mean fit of 60.3 % hides" in told
     two = of(99.0, -1.0, -2.0)
     assert two is not None and two.startswith("y1 (-1 %) and y2 (-2 %) are simulated")
+    hardly = of(95.0, 96.0, 0.6)
+    assert hardly is not None and hardly.startswith("y2 (0.6 %) is simulated hardly better than a constant would")
     assert of(95.0, 3.0) is None and of(10.0, -90.0) is None, "of all that is lost the other sentence speaks"
     assert of(95.0, -np.inf) is None
 
