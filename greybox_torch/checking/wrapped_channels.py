@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import read_card
 from greybox_torch.data.data_warning import InASentence
@@ -48,8 +49,12 @@ class WrappedChannel(InASentence):
         )
 
 
-def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
-    """Of every experiment the channels that jump by a whole turn."""
+def wrapped_channels(data: DataSet, joined: Mapping[str, JoinedFiles] | None = None) -> Iterator[WrappedChannel]:
+    """Of every experiment the channels that jump by a whole turn.
+
+    Args:
+        joined: by recording, the files that were joined in time.
+    """
     for recording in data.recordings:
         for name in recording.signals:
             values = recording.measured(name)
@@ -58,7 +63,10 @@ def wrapped_channels(data: DataSet) -> Iterator[WrappedChannel]:
             period, jumps = turn_within(values[known], unit)
             if len(jumps):
                 seconds = float(recording.time[known[jumps[0] + 1]] - recording.time[0])
-                write = _write(data, recording.name, name, period, joined=name in recording.between)
+                files = None if joined is None else joined.get(recording.name)
+                of_first = files is not None and files.columns.get(name) in files.source.tables[0].columns
+                slower = name in recording.between and not of_first
+                write = _write(data, recording.name, name, period, joined=slower)
                 yield WrappedChannel(recording.name, name, period, unit, len(jumps), seconds, write)
 
 
@@ -66,7 +74,8 @@ def _write(data: DataSet, experiment: str, name: str, period: float, *, joined: 
     """What to write on the card, as far as there is one; else what to do with the array.
 
     Args:
-        joined: whether the channel runs on straight lines between the samples of a slower file or column.
+        joined: whether the channel may run on straight lines between the samples of a slower file. A slower column of the first file does
+            so only behind its expression.
     """
     try:
         card = None if data.path is None else read_card(data.path)
