@@ -11,7 +11,7 @@ from greybox_torch.checking.joined_files import JoinedFiles
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import card_at
 from greybox_torch.data.checks import FEWEST_SAMPLES
-from greybox_torch.data.clocks_written import in_clocks
+from greybox_torch.data.clocks_written import in_clocks_to_fill_in
 from greybox_torch.data.counts import counts_samples
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.holding_out import HELD_OUT
@@ -45,19 +45,21 @@ def _of_file(files: JoinedFiles, table: Table) -> LittleInCommon | None:
     if covered >= _LITTLE * len(time) and not few:
         return None
     columns = ", ".join(f'"{column}"' for column in table.columns if column != files.clock)
+    lost = f"; what it has ({columns}) is missing in the others" if columns else ""
     found = (
         f"{inside} of the {len(stamps)} samples of {other} lie within the time of {first}"
         if few
-        else f"{covered} of {len(time)} samples lie within the time of {other}; what it has ({columns}) is missing in the others"
+        else f"{covered} of {len(time)} samples lie within the time of {other}{lost}"
     )
     within = np.flatnonzero((time >= stamps[0]) & (time <= stamps[-1])) + files.rows[0]
-    rows = f"rows = [{within[0]}, {within[-1] + 1}]"
-    clocks = in_clocks(files.name_of(table), unit="…", offset=0.0).replace("offset = 0", "offset = …")
+    rows = (
+        f"rows = [{within[0]}, {within[-1] + 1}], what they have in common" if len(within) else "rows within its time"
+    )
+    clocks = in_clocks_to_fill_in(files.name_of(table), "unit", "offset")
     return LittleInCommon(
         f'[[experiment]] "{files.recording.name.removesuffix(HELD_OUT)}": {found}: {other} is from {stamps[0]:.6g} to {stamps[-1]:.6g} s, '
         f"the experiment from {time[0]:.6g} to {time[-1]:.6g} s",
-        f"{clocks}, if the stamps of {other} are in another unit, or begin at another zero (offset: seconds to add); else {rows}, "
-        "what they have in common",
+        f"{clocks}, if the stamps of {other} are in another unit, or begin at another zero (offset: seconds to add); else {rows}",
     )
 
 

@@ -17,4 +17,14 @@ def clock_written(file: str, **keys: str | float | None) -> str:
 
 def in_clocks(file: str, **keys: str | float | None) -> str:
     """What to write of a file, for messages."""
-    return f"clocks = {{ {clock_written(file, **keys)} }} in that [[experiment]]"
+    return _in_that_experiment(clock_written(file, **keys))
+
+
+def in_clocks_to_fill_in(file: str, *keys: str) -> str:
+    """The same with the values of the ``keys`` left to the reader."""
+    blank = [f"{key} = …" if key == "offset" else f'{key} = "…"' for key in keys]
+    return _in_that_experiment(f"{toml_key(file)} = {{ {', '.join(blank)} }}")
+
+
+def _in_that_experiment(entry: str) -> str:
+    return f"clocks = {{ {entry} }} in that [[experiment]]"

@@ -52,7 +52,8 @@ def check_common_time(
             expected = _in_another_unit(experiment, (names[0], name), (_ends(whole), _ends(own)), time) or expected
         if expected:
             spans = f"{_span(other, own, time)}, and {first.path.name} {_span(first, whole, time)}"
-            raise UserError(f'{place}: {other.path}, column "{time.column}": {spans}: {found}; expected {expected}')
+            column = experiment.clocks.get(name, FileClock()).column or time.column
+            raise UserError(f'{place}: {other.path}, column "{column}": {spans}: {found}; expected {expected}')
 
 
 _MOST_FIRST = 'files of one run, first the one with the most samples in their common time, for join = "time"'

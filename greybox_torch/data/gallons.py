@@ -6,10 +6,16 @@ import re
 
 _GALLONS = re.compile(
     r"""(?<![A-Za-z_])(?:(?P<before>US|U\.S\.|UK|imp\.?|imperial)\ ?)? (?:liq(?:uid)?\ )?
-        (?P<of>gal(?:lons?)?|gpm|gph)(?![A-Za-z_]) (?:\ ?\((?P<behind>US|UK|imp)\))?""",
+        (?P<of>gal(?:lons?)?|gpm|gph)(?![A-Za-z_]) (?:(?P<each>\ ?/\ ?[A-Za-z]+)?\ ?\((?P<behind>US|UK|imp)\))?""",
     re.IGNORECASE | re.VERBOSE,
 )
-_PER = {"gpm": "/minute", "gph": "/hour"}
+_PER = {"gpm": "_per_minute", "gph": "_per_hour"}
+FLOWS = tuple(
+    f"{gallon}_per_{time} = {gallon} / {time}"
+    for gallon in ("gallon", "imperial_gallon")
+    for time in ("minute", "hour")
+)
+"""Of the registry of units: units of their own, so that a power, or what is divided by one, is that of the whole flow."""
 
 
 def with_gallons(unit: str) -> str:
@@ -22,4 +28,4 @@ def _registered(found: re.Match[str]) -> str:
     if not country and of.startswith("G") and of[1:3].lower() == "al":  # the unit of acceleration
         return found[0]
     gallon = "imperial_gallon" if country.startswith(("uk", "imp")) else "gallon"
-    return gallon + _PER.get(of.lower(), "")
+    return gallon + _PER.get(of.lower(), "") + (found["each"] or "")

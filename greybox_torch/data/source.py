@@ -124,6 +124,8 @@ def _joined_in_time(
     for file, table in zip(files, tables, strict=True):
         own = check_same_length(table.columns, table.path)
         notes += table.notes
+        if not len(own[time]) and table is not tables[0]:
+            raise UserError(f"{file}: has no samples; expected lines of numbers below its header")
         check_time(own[time], lambda sample, table=table: table.place(time, sample))
         if table is tables[0]:
             held = own

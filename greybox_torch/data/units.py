@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from greybox_torch.data.angles import has_angle
-from greybox_torch.data.gallons import with_gallons
+from greybox_torch.data.gallons import FLOWS, with_gallons
 from greybox_torch.data.unit_letters import in_small_letters
 from greybox_torch.errors import UserError, did_you_mean
 
@@ -244,5 +244,7 @@ def _registry() -> Any:
     registry.define("Nmm = newton * millimeter")
     registry.define("Ohm = ohm")
     registry.define("lpm = liter / minute")
+    for flow in FLOWS:
+        registry.define(flow)
     registry.define("gn = standard_gravity")
     return registry

@@ -178,7 +178,7 @@ class Verdict:
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
         digits = digits_between(before, after)
         goes = f"the validation fit goes from {told_fit(before, digits)} to {told_fit(after, digits)}{but}"
-        worse_than_a_constant = "; windows show it, while free runs say little: " if after < 0.0 else "; "
+        worse_than_a_constant = "; windows show it, while free runs say little: " if max(before, after) < 0.0 else "; "
         return f"{worse_than_a_constant}with {them} {goes}"
 
     def as_json(self) -> dict[str, Any]:

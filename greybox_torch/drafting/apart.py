@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from greybox_torch.data.clocks_written import in_clocks
+from greybox_torch.data.clocks_written import in_clocks_to_fill_in
 from greybox_torch.drafting.runs import Run
 
 
@@ -27,7 +27,7 @@ def apart_without_a_model(runs: Sequence[Run]) -> str:
 
 def _joined(first: Run, run: Run) -> str:
     names = [one.files[0].path.name for one in (first, run)]
-    clocks = in_clocks(names[1], column="…", unit="…", offset=0.0).replace("= 0 ", "= … ")
+    clocks = in_clocks_to_fill_in(names[1], "column", "unit", "offset")
     return (
         f"[[experiment]]: {names[0]} and {names[1]} have different channels; if they are of one run, one experiment with both: "
         f'file = ["{names[0]}", "{names[1]}"], join = "time", which needs time stamps in each; of another name, unit or zero than time at '

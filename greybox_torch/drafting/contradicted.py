@@ -10,7 +10,8 @@ from itertools import permutations
 from pathlib import Path
 
 from greybox_torch.data.card import TIME, Card, read_card
-from greybox_torch.data.card_channels import ChannelEntry
+from greybox_torch.data.card_channels import ChannelEntry, FileClock
+from greybox_torch.data.clocks_written import in_clocks
 from greybox_torch.data.column_units import OF_QUANTITY, is_set_apart, parts_of, unit_in
 from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle
 from greybox_torch.data.data_warning import InASentence
@@ -71,12 +72,12 @@ def contradictions(card: Path | None) -> list[Contradiction]:
 
 def _found(card: Card) -> Iterator[Contradiction]:
     whole = {TIME: card.time.column if card.time else None} | {n: e.column for n, e in card.channels.items()}
-    named = [("", whole, card)]
+    named: list[tuple[str, dict[str, str | None], Card, dict[str, FileClock]]] = [("", whole, card, {})]
     for e in card.experiment:
         own: dict[str, str | None] = {name: column.column for name, column in e.columns.items()}
-        named.append((f'[[experiment]] "{e.name}", ', own, card.of(e)))
-    columns = {column for _, of, _ in named for column in of.values() if column}
-    for where, of, card in named:
+        named.append((f'[[experiment]] "{e.name}", ', own, card.of(e), e.clocks))
+    columns = {column for _, of, *_ in named for column in of.values() if column}
+    for where, of, card, clocks in named:
         for name, column in of.items():
             if column is None:
                 continue
@@ -90,7 +91,17 @@ def _found(card: Card) -> Iterator[Contradiction]:
             elif name in card.channels:
                 to_write = partial(conversion_written, name, column, own=bool(where))
                 yield from _of_channel(f'{where}channel "{name}"', column, card.channels[name], columns, to_write)
+        yield from _of_clocks(where, clocks, card)
         yield from _exchanged(where, {n: c for n, c in of.items() if c and n in card.channels}, card.channels, columns)
+
+
+def _of_clocks(where: str, clocks: Mapping[str, FileClock], card: Card) -> Iterator[Contradiction]:
+    """Of the time stamps of files that are joined in time, where the card gives their column and no unit."""
+    for file, clock in clocks.items():
+        told = "" if clock.column is None or clock.unit else time_in(clock.column)
+        if clock.column is not None and card.time is not None and told and _differ(told, card.time.unit):
+            write = in_clocks(file, column=clock.column, unit=told, offset=clock.offset or None, date=clock.date)
+            yield Contradiction(f'{where}clocks, "{file}"', clock.column, told, card.time.unit, write)
 
 
 def _exchanged(

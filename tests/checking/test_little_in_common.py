@@ -104,3 +104,34 @@ def test_a_counter_is_no_time(tmp_path: Path) -> None:
     assert "sample_time = <seconds" in line
     assert not told(joined(tmp_path, 0.01 * counts, 0.01 * counts, top='time = "frame"\n'))
     assert not told(joined(tmp_path, counts, counts, top='time = "stamp"\n'))
+
+
+NOTHING_FROM_IT = 'y = { column = "u", scale = 2, unit = "m" }'
+
+
+@pytest.mark.parametrize(
+    ("camera", "rows", "told_of"),
+    [
+        (
+            CAMERA[:400],
+            "rows = [1000, 3000]\n",
+            "0 of the 400 samples of camera.csv lie within the time of drive.csv: ",
+        ),
+        (np.array([0.505]), "", "0 of 5000 samples lie within the time of camera.csv: "),
+    ],
+)
+def test_a_file_of_which_nothing_is_read(
+    tmp_path: Path, camera: np.ndarray, rows: str, told_of: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Seen: IndexError from `check`, where no sample of the experiment lies within the time of a file."""
+    monkeypatch.setattr(f"{__name__}.CARD", CARD.replace('y = { column = "y", unit = "m" }', NOTHING_FROM_IT))
+    (line,) = told(joined(tmp_path, DRIVE, camera, rows))
+    assert told_of in line and line.endswith("else rows within its time")
+
+
+@pytest.mark.parametrize("entry", ['y = { column = "y", unit = "m" }', NOTHING_FROM_IT])
+def test_a_joined_file_without_samples(tmp_path: Path, entry: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seen: "array of sample points is empty", an error of NumPy."""
+    monkeypatch.setattr(f"{__name__}.CARD", CARD.replace('y = { column = "y", unit = "m" }', entry))
+    with pytest.raises(gt.UserError, match=r"camera\.csv: has no samples; expected lines of numbers below its header"):
+        joined(tmp_path, DRIVE, CAMERA[:0])

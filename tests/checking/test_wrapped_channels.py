@@ -124,3 +124,21 @@ def test_a_slower_file_that_is_joined_in_time(tmp_path: Path, entry: str) -> Non
     else:
         write = "q = { expr = 'unwrap(deg, 360)', … }, which adds up the turns, with the rest of the line as it is"
         assert told == {write}
+
+
+def test_a_slower_column_of_the_first_file(tmp_path: Path) -> None:
+    """Its expression comes before the straight lines between its samples: `unwrap` on the card is in time."""
+    stamps = TIME.tolist()
+    degrees = [f"{q:.6f}" if k % 10 == 0 else "" for k, q in enumerate((np.degrees(ANGLE) % 360.0).tolist())]
+    rows = [f"{t:.3f},{q}" for t, q in zip(stamps, degrees, strict=True)]
+    (tmp_path / "first.csv").write_text("\n".join(["t,deg", *rows]))
+    (tmp_path / "other.csv").write_text("\n".join(["t,u", *(f"{t:.3f},{k % 7}" for k, t in enumerate(stamps))]))
+    run = '[[experiment]]\nname = "run"\nfile = ["first.csv", "other.csv"]\njoin = "time"\nrole = "validation"\n'
+    card = tmp_path / "dataset.toml"
+    turns = {}
+    for entry in ('column = "deg"', 'expr = "unwrap(deg, 360)"'):
+        channels = f'u = {{ column = "u", unit = "V" }}\nq = {{ {entry}, unit = "deg" }}\n'
+        card.write_text(f'time = "t"\n[channels]\n{channels}{run}')
+        turns[entry] = [one for one in data_warnings(load_dataset(card), None) if "turn" in one.found]
+    (before, after) = turns.values()
+    assert "expr = 'unwrap(deg, 360)'" in before[0].write and not after

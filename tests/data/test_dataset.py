@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from greybox_torch.data import Channel, DataSet, ParameterEntry, Recording, load_dataset
@@ -109,6 +110,12 @@ def test_parameters_in_each_of_their_ways() -> None:
             'it is the last quarter, which is held out where no experiment has the role "validation": give one that role',
         ),
         ({"speed": np.ones(20)}, {}, "recordings: found an object of type dict, expected recordings"),
+        (
+            pd.DataFrame({"speed": np.ones(20)}),
+            {},
+            "recordings: found an object of type DataFrame, expected recordings",
+        ),
+        (None, {}, "recordings: found an object of type NoneType, expected recordings"),
         ([run("a")], {"hold": "zho"}, 'hold: found \'zho\', expected "zoh" or "foh"'),
         ([run("a")], {"name": ""}, "DataSet, name: found ''"),
         ([run("a")], {"parameters": {"J": "x"}}, 'DataSet, parameters, J: value: found "x", expected a number'),

@@ -141,3 +141,10 @@ def test_dates_of_the_card_are_of_files_that_have_them(
     first, second = gt.load_dataset(tmp_path / "dataset.toml").recordings
     dated = 1772366400.0 * (stamp is not seconds)
     assert first.time[0] == 1772366400.0 and second.time[[0, 100]] == pytest.approx([dated, dated + 1.0])
+
+
+def test_a_file_is_told_with_its_own_column(tmp_path: Path) -> None:
+    write(tmp_path / "drive.csv", "t,current", DRIVE, seconds)
+    write(tmp_path / "camera.csv", "stamp,position", CAMERA + 500.0, seconds)
+    with pytest.raises(gt.UserError, match=r'camera.csv, column "stamp": is from 500 to'):
+        loaded(tmp_path, 'time = "t"', 'clocks = { "camera.csv" = { column = "stamp" } }')

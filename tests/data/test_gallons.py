@@ -9,7 +9,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.data.column_units import unit_in
-from greybox_torch.data.units import conversion, dimensionality
+from greybox_torch.data.units import conversion
 
 US, IMPERIAL = 3.785411784, 4.54609
 
@@ -17,7 +17,20 @@ US, IMPERIAL = 3.785411784, 4.54609
 @pytest.mark.parametrize(
     ("written", "liters"),
     [
-        *((u, US) for u in ("gpm", "GPM", "gal/min", "US gal/min", "US GPM", "usgpm", "gpm (US)", "gal(US)/min")),
+        *(
+            (u, US)
+            for u in (
+                "gpm",
+                "GPM",
+                "gal/min",
+                "US gal/min",
+                "US GPM",
+                "usgpm",
+                "gpm (US)",
+                "gal(US)/min",
+                "gal/min (US)",
+            )
+        ),
         *((u, IMPERIAL) for u in ("imp gal/min", "UK gal/min", "Imp. gal/min", "UK gpm")),
     ],
 )
@@ -28,12 +41,24 @@ def test_flows_in_gallons_a_minute(written: str, liters: float) -> None:
     assert conversion(f"{written}", "gph (UK)", "")[0] == pytest.approx(60.0 * liters / IMPERIAL)
 
 
-@pytest.mark.parametrize("written", ["Gal", "GAL/s"])
-def test_the_unit_of_acceleration_is_no_gallon(written: str) -> None:
-    try:
-        assert "[length]" in dimensionality(written) and dimensionality(written)["[length]"] == 1.0
-    except ValueError:  # of the registry's spelling
-        assert written == "GAL/s"
+@pytest.mark.parametrize(
+    ("written", "in_liters", "factor"),
+    [
+        ("psi/gpm", "psi min/l", 1.0 / US),
+        ("psi/gpm^2", "psi min^2/l^2", 1.0 / US**2),
+        ("gpm2", "l^2/min^2", US**2),
+        ("V/(UK gpm)", "V min/l", 1.0 / IMPERIAL),
+    ],
+)
+def test_a_flow_is_divided_by_and_squared_as_a_whole(written: str, in_liters: str, factor: float) -> None:
+    """Seen: "psi/gpm", the resistance of a pipe, as psi/gallon/min."""
+    assert conversion(written, in_liters, "")[0] == pytest.approx(factor)
+
+
+def test_the_unit_of_acceleration_is_no_gallon() -> None:
+    assert conversion("Gal", "m/s^2", "")[0] == pytest.approx(0.01)
+    with pytest.raises(gt.UserError, match='"GAL/s" is no unit that is known'):  # the registry has no such spelling
+        conversion("GAL/s", "l/s", "")
 
 
 @pytest.mark.parametrize("column", ["flow_gpm", "flow [US gal/min]", "Q (GPM)", "Q/gpm", "flow in gpm"])

@@ -227,3 +227,21 @@ def test_a_command_that_estimates_warns(contradicted: Path, tmp_path: Path) -> N
     done = CliRunner().invoke(app, ["simulate", str(contradicted), "--out", str(tmp_path / "out")])
     assert done.exit_code == 0, done.output
     assert f"warning: {contradicted}: {FOUND}" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("clock", "told"),
+    [
+        ('column = "stamp_ms", offset = 0.5', ['{ column = "stamp_ms", unit = "ms", offset = 0.5 }']),
+        ('column = "stamp_ms", unit = "s"', []),
+        ('column = "stamp_s"', []),
+        ("offset = 0.5", []),
+    ],
+)
+def test_the_clock_of_a_joined_file(tmp_path: Path, clock: str, told: list[str]) -> None:
+    card = tmp_path / "dataset.toml"
+    run = f'[[experiment]]\nname = "A"\nfile = ["a.csv", "b.csv"]\njoin = "time"\nclocks = {{ "b.csv" = {{ {clock} }} }}\n'
+    card.write_text(f'time = "t"\n[channels]\nu = {{ column = "u", unit = "V" }}\n{run}')
+    found = contradictions(card)
+    assert [one.write for one in found] == [f'clocks = {{ "b.csv" = {one} }} in that [[experiment]]' for one in told]
+    assert all(one.place == '[[experiment]] "A", clocks, "b.csv"' for one in found)
