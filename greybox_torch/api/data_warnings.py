@@ -59,7 +59,7 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *lone_samples(data, joined),
         *stuck_sensors(data, model),
         *(clipped_outputs(data, model) if model is not None else ()),
-        *wrapped_channels(data, joined),
+        *wrapped_channels(data),
         *percentages(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),
