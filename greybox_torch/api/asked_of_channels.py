@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from greybox_torch.api.exchanged import exchanged, exchanged_of_other_units
-from greybox_torch.api.rescaled import rescaled
+from greybox_torch.api.rescaled import rescaled, rescaled_output
 from greybox_torch.api.short_refits import Asked, beginnings
 from greybox_torch.api.turned_in_one import turned_in_one
 from greybox_torch.api.with_friction import changed_with_friction, friction_explains_more
@@ -28,6 +28,7 @@ def asked_where_poor(
     refit: Sequence[Score],
     simulator: Callable[[], Simulator],
     progress: Callable[[str], None],
+    values: Mapping[str, float] | None = None,
 ) -> Asked | None:
     """The question of :func:`exchanged`, or else of the other ways in their order, where the re-estimated model, with the scores ``refit``,
     is poor on the validation experiments.
@@ -35,6 +36,7 @@ def asked_where_poor(
     Args:
         simulator: makes the one that is needed then.
         progress: is told of it, as it takes as long as a few short refits.
+        values: the parameters of the estimate, with which :func:`rescaled_output` is asked last; not, where None.
     """
     if not poor(refit) or beginnings(data) is None:
         return None
@@ -44,6 +46,8 @@ def asked_where_poor(
     made, achieved = simulator(), mean_fit(held_out_scores(refit))
     ways = (exchanged, exchanged_of_other_units, turned_in_one, _scale, changed_with_friction)
     question = next((asked for way in ways if (asked := way(data, model, made, achieved))), None)
+    if question is None and values is not None:
+        question = rescaled_output(data, model, made, refit, values)
     progress(FAR_BETTER_SO if question else NOTHING_CHANGED)
     return question
 

@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from greybox_torch.api.arguments import check_estimation, check_model, check_moving, check_precision
-from greybox_torch.api.asked_of_channels import asked_where_poor, poor
+from greybox_torch.api.asked_of_channels import asked_where_poor
 from greybox_torch.api.data_argument import Data, check_data
 from greybox_torch.api.fit_result import FitResult
 from greybox_torch.api.plain_arguments import check_device, check_names, check_seed, check_told, check_whole
-from greybox_torch.api.rescaled import rescaled_output
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.comparison import Comparison, compare
 from greybox_torch.estimate.fit import Estimation, fit_records
@@ -89,10 +88,8 @@ def fit(
     )
     drawn = _profiles(found, simulator, names, precision, progress)
     comparisons = _compared(data, given, found, simulator)
-    scores = comparisons["refit"].scores
-    asked = asked_where_poor(data, given, scores, lambda: simulator, progress)
-    if asked is None and poor(scores):
-        asked = rescaled_output(data, given, simulator, scores, found.problem.values_by_name)
+    values = found.problem.values_by_name
+    asked = asked_where_poor(data, given, comparisons["refit"].scores, lambda: simulator, progress, values)
     question = None if asked is None else asked.question
     held = held_starts(data, found.problem, found.mse, simulator)
     seconds = time.perf_counter() - began

@@ -7,7 +7,7 @@ import numpy as np
 from greybox_torch.api.scores import Scores
 from greybox_torch.data import DataSet
 from greybox_torch.data.holding_out import HELD_OUT
-from greybox_torch.estimate.comparison import held_out_scores, mean_fit, of_moving_outputs
+from greybox_torch.estimate.comparison import fits_by_output, held_out_scores, mean_fit, of_moving_outputs
 from greybox_torch.estimate.problem import Problem
 from greybox_torch.name_lists import listed
 
@@ -56,9 +56,7 @@ def lost_outputs(scores: Scores) -> str | None:
     Arguments as for :func:`fit_advice`.
     """
     judging = of_moving_outputs(held_out_scores(scores["refit"]))
-    fits = {
-        name: mean_fit([s for s in judging if s.output == name]) for name in dict.fromkeys(s.output for s in judging)
-    }
+    fits = fits_by_output(judging)
     lost = [name for name, fit in fits.items() if np.isfinite(fit) and fit <= HARDLY]
     if not lost or len(lost) == len(fits) or not mean_fit(judging) > 0.0:
         return None

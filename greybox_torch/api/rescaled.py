@@ -27,7 +27,7 @@ from greybox_torch.api.short_refits import (
 from greybox_torch.data import DataSet
 from greybox_torch.data.units import conversion, per_minute
 from greybox_torch.diagnosis.digits import digits
-from greybox_torch.estimate.comparison import Score, held_out_scores, mean_fit
+from greybox_torch.estimate.comparison import Score, fits_by_output, held_out_scores, mean_fit
 from greybox_torch.model import GreyBoxModel
 from greybox_torch.name_lists import listed
 from greybox_torch.simulation.simulator import Simulator
@@ -89,7 +89,7 @@ def rescaled_output(
         values: its parameters.
     """
     judged = held_out_scores(scores)
-    fits = {one.name: mean_fit([s for s in judged if s.output == one.name]) for one in model.outputs}
+    fits = fits_by_output(judged)
     lost = {name for name, fit in fits.items() if not fit >= FOLLOWS}
     short, achieved = beginnings(data), mean_fit(judged)
     if short is None or not lost or len(lost) == len(fits) or not np.isfinite(achieved):

@@ -39,21 +39,22 @@ def little_in_common(joined: Mapping[str, JoinedFiles]) -> Iterator[LittleInComm
 def _of_file(files: JoinedFiles, table: Table) -> LittleInCommon | None:
     time, stamps = files.time[slice(*files.rows)], table.columns[files.clock] * files.seconds
     first, other = files.source.tables[0].path.name, table.path.name
-    covered = int(((time >= stamps[0]) & (time <= stamps[-1])).sum())
+    covered = np.flatnonzero((time >= stamps[0]) & (time <= stamps[-1])) + files.rows[0]
     inside = int(((stamps >= time[0]) & (stamps <= time[-1])).sum())
     few = inside < FEWEST_SAMPLES and inside < _LITTLE * len(stamps)
-    if covered >= _LITTLE * len(time) and not few:
+    if len(covered) >= _LITTLE * len(time) and not few:
         return None
     columns = ", ".join(f'"{column}"' for column in table.columns if column != files.clock)
     lost = f"; what it has ({columns}) is missing in the others" if columns else ""
     found = (
         f"{inside} of the {len(stamps)} samples of {other} lie within the time of {first}"
         if few
-        else f"{covered} of {len(time)} samples lie within the time of {other}{lost}"
+        else f"{len(covered)} of {len(time)} samples lie within the time of {other}{lost}"
     )
-    within = np.flatnonzero((time >= stamps[0]) & (time <= stamps[-1])) + files.rows[0]
     rows = (
-        f"rows = [{within[0]}, {within[-1] + 1}], what they have in common" if len(within) else "rows within its time"
+        f"rows = [{covered[0]}, {covered[-1] + 1}], what they have in common"
+        if len(covered)
+        else "rows within its time"
     )
     clocks = in_clocks_to_fill_in(files.name_of(table), "unit", "offset")
     return LittleInCommon(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import UTC, datetime
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,6 @@ _HARDLY = 0.1
 """Share of the time of both files that they have in common, below which another unit is thought of."""
 _MOSTLY = 0.5
 """Share that they would have in another unit, if that is meant."""
-_UNITS: tuple[TimeUnit, ...] = ("s", "ms", "us", "ns", "min", "h")
 
 Span = tuple[float, float]
 
@@ -80,7 +80,7 @@ def _in_another_unit(
         return ""
     for k in (1, 0):
         shares = {}
-        for unit in _UNITS:
+        for unit in get_args(TimeUnit):
             factor = TimeEntry(column=time.column, unit=unit).seconds / time.seconds
             shares[unit] = _shared((spans[k][0] * factor, spans[k][1] * factor), spans[1 - k])
         best = max(shares, key=lambda unit: shares[unit])

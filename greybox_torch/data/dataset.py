@@ -155,8 +155,8 @@ class DataSet:
 
 def _checked_recordings(recordings: Iterable[Recording]) -> tuple[Recording, ...]:
     # of a table of arrays, in a dictionary or a data frame, the names alone would be read
-    one = isinstance(recordings, Recording | Mapping | str) or hasattr(recordings, "columns")
-    one = one or not isinstance(recordings, Iterable)
+    table = isinstance(recordings, Mapping | str) or hasattr(recordings, "columns")
+    one = table or isinstance(recordings, Recording) or not isinstance(recordings, Iterable)
     held: tuple[Any, ...] = (recordings,) if one else tuple(recordings)
     for recording in held:
         if not isinstance(recording, Recording):

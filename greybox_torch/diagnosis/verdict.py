@@ -178,8 +178,8 @@ class Verdict:
         but = f" (without {', '.join(sorted(self.unstable))}, which no free run follows)" if self.unstable else ""
         digits = digits_between(before, after)
         goes = f"the validation fit goes from {told_fit(before, digits)} to {told_fit(after, digits)}{but}"
-        worse_than_a_constant = "; windows show it, while free runs say little: " if max(before, after) < 0.0 else "; "
-        return f"{worse_than_a_constant}with {them} {goes}"
+        lead = "windows show it, while free runs say little: " if max(before, after) < 0.0 else ""
+        return f"; {lead}with {them} {goes}"
 
     def as_json(self) -> dict[str, Any]:
         """The dictionary of `verdict.json` (contract sections 4 and 8).

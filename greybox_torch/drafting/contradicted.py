@@ -34,11 +34,11 @@ _SURE = frozenset(("rpm", "deg/s", "rad/s", "mN m", "mm", "degC", "degF"))
 _AS_WRITTEN = {"Nm": "N m", "mA": "mA", "mV": "mV", "kW": "kW"}
 """Sure only if written so: speed_ma is a moving average, u_mv a manipulated variable."""
 _BESIDE = (
-    ("m/s", {"kn": "kn", "kt": "kt", "kts": "kts", "knots": "knots"}),
-    ("m/s^2", {"g": "g", "mg": "mg"}),
-    ("N m", {"Nmm": "Nmm", "Ncm": "Ncm"}),
-    ("m", {"ft": "ft"}),
-    ("rad", {"cdeg": "cdeg"}),
+    ("m/s", ("kn", "kt", "kts", "knots")),
+    ("m/s^2", ("g", "mg")),
+    ("N m", ("Nmm", "Ncm")),
+    ("m", ("ft",)),
+    ("rad", ("cdeg",)),
 )
 """Words that are units beside such a quantity, in brackets or as the last of a name: those of boats and aircraft, whose logs have speeds
 in knots and accelerations in multiples of gravity. Elsewhere "kn" may be kN and "g" a gram."""
@@ -175,7 +175,7 @@ def _told_beside(column: str, told: str, said: str) -> str:
     for unit, words in _BESIDE:
         if word in words and _dimension(said) == _dimension(unit) and (unit != "rad" or is_angle(said)):
             alone = word == "g" and not set_apart
-            return words[word] if not alone or _ACCELERATION.match(stem) else ""
+            return word if not alone or _ACCELERATION.match(stem) else ""
     return ""
 
 

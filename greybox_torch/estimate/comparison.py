@@ -124,6 +124,11 @@ def mean_fit(scores: Sequence[Score]) -> float:
     return float(np.mean([s.fit for s in moving])) if moving else 0.0
 
 
+def fits_by_output(scores: Sequence[Score]) -> dict[str, float]:
+    """The mean fit in % of each output that has scores."""
+    return {name: mean_fit([s for s in scores if s.output == name]) for name in dict.fromkeys(s.output for s in scores)}
+
+
 def fit_rows(scores: Mapping[str, Sequence[Score]]) -> list[dict[str, Any]]:
     """The rows ``fit`` of `verdict.json` from scores by model name ("start", "refit", "augmented"), each in the same order."""
     rows = []

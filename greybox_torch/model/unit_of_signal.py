@@ -7,7 +7,6 @@ import torch
 from greybox_torch.model.greybox_model import GreyBoxModel
 from greybox_torch.model.ports import Signal
 from greybox_torch.model.random_points import random_points
-from greybox_torch.model.states_of import states_of
 
 
 def unit_of_signal(model: GreyBoxModel, signal: Signal) -> str:
@@ -20,7 +19,8 @@ def unit_of_signal(model: GreyBoxModel, signal: Signal) -> str:
     *points, p = random_points(model)
     x, u = model.named_signals(*points)
     here, found = torch.as_tensor(signal(x, u, p)), set()
-    for name in states_of(model, signal):
+    for name in x:
         change = torch.as_tensor(signal(x.replaced(**{name: x[name] + 1.0}), u, p)) - here
-        found.add(units[name] if torch.allclose(change.abs(), torch.ones_like(change)) else "")
+        if change.any():
+            found.add(units[name] if torch.allclose(change.abs(), torch.ones_like(change)) else "")
     return found.pop() if len(found) == 1 else ""

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 import pytest
 
 import greybox_torch as gt
 from greybox_torch.api import asked_of_channels, short_refits, with_friction
 from greybox_torch.api.short_refits import Asked
-from tests.api.test_with_friction import COUNT, STEP, Drive
+from tests.api.rotor import recordings
+from tests.api.test_with_friction import Drive
 
-LEVEL = 4.0
+LEVEL, TORQUES = 4.0, (-8.0, 8.0)
 
 
 class Known(Drive):
@@ -24,24 +23,12 @@ class Known(Drive):
     )
 
 
-def recorded(role: Literal["estimation", "validation"], seed: int, factor: float, level: float) -> gt.Recording:
-    draw = np.random.default_rng(seed)
-    torque, speed = np.repeat(draw.uniform(-8.0, 8.0, COUNT // 30), 30), np.zeros(COUNT)
-    for k in range(COUNT - 1):
-        w = speed[k]
-        for _ in range(20):
-            w += STEP / 20 * (torque[k] - 0.1 * w - level * np.tanh(w / 0.1)) / 0.3
-        speed[k + 1] = w
-    given = {"torque": torque, "speed": factor * speed + 0.02 * draw.standard_normal(COUNT)}
-    return gt.Recording.from_arrays(role, given, sample_time=STEP, role=role)
-
-
 @pytest.mark.parametrize(("factor", "level", "asked"), [(1.0, LEVEL, ""), (30.0 / np.pi, 0.0, "the scale of speed")])
 def test_friction_that_explains_more_is_no_scale(factor: float, level: float, asked: str) -> None:
     """Seen: "Is the scale of speed right? With values 9.55 times as large, a short refit reaches a mean fit of 30.4 %"; with friction
     alone it reaches 99 %.
     """
-    data = gt.DataSet([recorded("estimation", 1, factor, level), recorded("validation", 2, factor, level)])
+    data = recordings(level, torques=TORQUES, factor=factor)
     question = gt.fit(Known(), data).question
     assert (question is not None) is bool(asked), question
     assert question is None or asked in question
@@ -57,7 +44,7 @@ def test_a_unit_beside_friction_explains_more_than_the_friction(
     monkeypatch.setattr(with_friction, "nearest", lambda *given: [])
     found = lambda *given, **how: (100.0 - alone, [100.0 - with_unit] * len(given[3])) if given[3] else None  # noqa: E731
     monkeypatch.setattr(with_friction, "far_better", found)
-    data = gt.DataSet([recorded("estimation", 1, 1.0, LEVEL), recorded("validation", 2, 1.0, LEVEL)])
+    data = recordings(LEVEL, torques=TORQUES)
     for achieved in (0.0, -300.0, -np.inf):
         question = with_friction.changed_with_friction(data, Drive(), None, achieved)  # pyright: ignore[reportArgumentType]
         assert (question is not None) is asked
@@ -70,6 +57,6 @@ def test_the_two_are_compared(friction: float, kept: bool, monkeypatch: pytest.M
     monkeypatch.setattr(with_friction, "_rubbing", lambda *given: (None, None))
     monkeypatch.setattr(with_friction, "fit_after", lambda *given, **how: friction)
     assert with_friction.AS_IT_IS is short_refits.AS_IT_IS
-    data = gt.DataSet([recorded("estimation", 1, 1.0, LEVEL), recorded("validation", 2, 1.0, LEVEL)])
+    data = recordings(LEVEL, torques=TORQUES)
     told = asked_of_channels._scale(data, Drive(), None, 20.0)  # pyright: ignore[reportArgumentType,reportPrivateUsage]
     assert (told == question) is kept

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 import pytest
 
@@ -12,8 +10,9 @@ from greybox_torch.api import short_refits, with_friction
 from greybox_torch.api.rescaled import of_units
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
+from tests.api.rotor import STEP, recorded, recordings
 
-COUNT, STEP = 600, 0.02
+TORQUES = (-4.0, 12.0)
 
 
 class Drive(gt.GreyBoxModel):
@@ -35,22 +34,10 @@ class Drive(gt.GreyBoxModel):
         return {"speed": x.speed}
 
 
-def recorded(role: Literal["estimation", "validation"], seed: int, sign: float, level: float) -> gt.Recording:
-    draw = np.random.default_rng(seed)
-    torque, speed = np.repeat(draw.uniform(-4.0, 12.0, COUNT // 30), 30), np.zeros(COUNT)
-    for k in range(COUNT - 1):
-        w = speed[k]
-        for _ in range(20):
-            w += STEP / 20 * (torque[k] - 0.1 * w - level * np.tanh(w / 0.1)) / 0.3
-        speed[k + 1] = w
-    given = {"torque": sign * torque, "speed": speed + 0.02 * draw.standard_normal(COUNT)}
-    return gt.Recording.from_arrays(role, given, sample_time=STEP, role=role)
-
-
 @pytest.mark.parametrize(("sign", "level", "asked"), [(-1.0, 5.0, True), (1.0, 5.0, False)])
 def test_the_sign_is_asked_for_with_the_friction_that_lacks(sign: float, level: float, asked: bool) -> None:
     """Seen: "the channels seem to be what the card says" of a conveyor's torque of the other sign."""
-    data = gt.DataSet([recorded("estimation", 1, sign, level), recorded("validation", 2, sign, level)])
+    data = recordings(level, torques=TORQUES, sign=sign)
     question = gt.fit(Drive(), data).question
     assert (question is not None) is asked, question
     if question is not None:
@@ -78,7 +65,7 @@ def test_a_unit_is_asked_for_with_the_friction_that_lacks(factor: float, asked: 
     """Seen: a motor's rpm read as rad/s; a mass at its bound and a friction of the other body made up for it, and nothing was asked."""
     runs = []
     for k, role in enumerate(("estimation", "validation"), start=1):
-        run = recorded(role, k, 1.0, 5.0)
+        run = recorded(role, k, 5.0, torques=TORQUES)
         way = 0.03 * STEP * np.cumsum(run.signals["speed"])
         signals = {"torque": run.signals["torque"], "speed": factor * run.signals["speed"], "place": way - way[0]}
         runs.append(gt.Recording.from_arrays(role, signals, sample_time=STEP, role=role))
@@ -109,7 +96,7 @@ def test_of_units_only_as_many_changes_as_are_worth_a_refit(monkeypatch: pytest.
     monkeypatch.setattr(with_friction, "as_it_is", lambda *given: 0.0)
     monkeypatch.setattr(with_friction, "nearest", lambda *given: [])
     monkeypatch.setattr(with_friction, "far_better", lambda *given, **how: tried.append(len(given[3])))
-    data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
+    data = recordings(5.0, torques=TORQUES)
     for model in (Drive(), Pair(), Train()):
         assert with_friction.changed_with_friction(data, model, None, 0.0) is None  # pyright: ignore[reportArgumentType]
     assert tried[::2] == [0, 0, 0], "signs, which are asked about first"
@@ -128,7 +115,7 @@ def test_the_model_with_friction_is_made_and_refitted_as_it_is_once(monkeypatch:
     monkeypatch.setattr(with_friction, "survey", lambda *given: surveys.append(1) or survey(*given))
     for module in (with_friction.nearest, short_refits.far_better):
         monkeypatch.setitem(module.__globals__, "fit_after", fit_after)
-    data = gt.DataSet([recorded("estimation", 1, 1.0, 5.0), recorded("validation", 2, 1.0, 5.0)])
+    data = recordings(5.0, torques=TORQUES)
     simulator = simulator_for(make_problem(data, Drive(), data.estimation()))
     assert with_friction.changed_with_friction(data, Drive(), simulator, 0.0) is None
     assert len(surveys) == 1 and refitted.count("") == 1
