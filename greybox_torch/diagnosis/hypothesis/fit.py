@@ -94,6 +94,7 @@ def hypothesis(
     early: Sequence[Mapping[str, float]] = (),
     before: Hypothesis | None = None,
     beside: Hypothesis | None = None,
+    absent: Mapping[str, float] = {},
     rough: bool = False,
     places: Places = NOWHERE,
 ) -> Hypothesis | None:
@@ -107,6 +108,7 @@ def hypothesis(
         before: a rougher fit of the same effects with the same free parameters, which is carried on at the lengths that it has.
         beside: a fit of other effects. Over windows of every length but the shortest a trial begins with its values and start states: what
             short windows do not determine wanders off there, and start states of those do not lead back.
+        absent: what the effects' parameters begin with there.
         at: window lengths; by default :func:`window_lengths`.
         limits: how far the best of the starts is followed; by default ``budget.window_iterations``.
         shorter: a fit on shorter windows that the start states are taken from.
@@ -119,7 +121,7 @@ def hypothesis(
     model = augmented(base, effects, surroundings)
     problems = [without_free(problem_for(base, model, start), frozen) for start in starts]
     first = [without_free(problem_for(base, model, start), frozen) for start in early]
-    there = None if beside is None else without_free(problem_for(base, model, beside.values()), frozen)
+    there = None if beside is None else without_free(problem_for(base, model, {**beside.values(), **absent}), frozen)
     simulator = simulator or Simulator.of(model, problems[0].free_names, options)
     limits, fits = limits or budget.window_iterations, []
     as_far = partial(_as_far_as_counts, base, limits, settings, budget, rough)

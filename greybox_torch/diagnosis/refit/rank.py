@@ -98,7 +98,19 @@ def rank(
             simulator=simulator,
             frozen=_held(candidate, frozen),
         )
+        if candidate.absent and (fitted is None or fitted.score > current.score):
+            fitted = from_absent(candidate, before, simulator, fitted)
         return None if fitted is None else judged(candidate, current, fitted, study.settings)
+
+    def from_absent(
+        candidate: Candidate, trial: Hypothesis, simulator: Simulator, fitted: Hypothesis | None
+    ) -> Hypothesis | None:
+        """Its fit from what was there before it, where it ended worse than that: another valley. As it is where that is no better."""
+        begun = {**current.values(), **candidate.absent}
+        how = {"simulator": simulator, "frozen": _held(candidate, frozen), "limits": budget.window_iterations}
+        shorter, absent = candidate.begun or current.fits[0], candidate.absent
+        again = refit(trial.effects, [begun, trial.values()], shorter, beside=current, absent=absent, **how)
+        return again if again is not None and (fitted is None or again.score < fitted.score) else fitted
 
     pairs = list(zip(found, simulators, strict=True))
     reached = side_by_side(partial(tried, *pair) for pair in pairs)
