@@ -34,6 +34,8 @@ def _known(study: Study, state: SearchState, curves: bool) -> dict[tuple, Candid
     for effect in before.effects:
         if effect.prefix in state.prefixes or (effect.mechanism.free and (state.has_curve or not curves)):
             continue
+        if not effect.mechanism.available(study.surroundings[effect.port]):
+            continue  # what drives and brakes a body depends on which way it turns, and on the experiments
         attachment, values = over_its_range(before, effect, study.surroundings)
         offered.append(Candidate(attachment, (), 0.0, found_before=(values,)))
     return {identity_of(c.attachment): c for c in offered}

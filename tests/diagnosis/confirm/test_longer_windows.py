@@ -18,6 +18,7 @@ from greybox_torch.diagnosis.confirm.longer_windows import (
 )
 from greybox_torch.diagnosis.pipeline import diagnose
 from greybox_torch.diagnosis.settings import DiagnosisSettings, SearchBudget
+from greybox_torch.mechanisms.friction import CoulombFriction
 from greybox_torch.mechanisms.surroundings import Range
 from greybox_torch.systems.load import load_model
 
@@ -203,7 +204,7 @@ def test_less_is_asked_where_free_runs_hardly_follow_without(monkeypatch, stub, 
     """Seen: a trolley's dry friction beside a lag, 2.0 standard errors by the few windows, 34 % left of 64 to 84 % of the fit."""
     monkeypatch.setattr(module, "same_everywhere", lambda *args: True)
     study = stub(settings=SETTINGS, budget=SearchBudget(), surroundings={"trolley": stub()})
-    friction = stub(prefix="friction", port="trolley")
+    friction = stub(prefix="friction", port="trolley", mechanism=CoulombFriction())
 
     def found(errors_away: float, left: float) -> bool:
         runs = judgement(stub, run_2=left)

@@ -61,3 +61,13 @@ def test_a_curve_that_was_found_is_offered_as_it_was_drawn(motor, drag_search) -
 
 def test_a_first_search_is_offered_nothing_more(drag_search) -> None:
     assert with_found_before(drag_search.study, drag_search.state, [], curves=True) == []
+
+
+def test_a_curve_over_what_the_experiments_do_not_show_now_is_not_offered(motor, drag_search) -> None:
+    """Seen: a robot's friction along the motor's voltage, found on a run that turned round: KeyError, along@u, on the next experiment."""
+    curve = attach(motor, "rotor", Unknown("speed", 16))
+    state, _ = knowing(drag_search, (curve,), {f"{curve.prefix}.w_{k}": 0.01 for k in range(16)})
+    around = drag_search.study.surroundings
+    ranges = {n: r for n, r in around["rotor"].ranges.items() if n != "speed"}
+    study = replace(drag_search.study, surroundings={**around, "rotor": replace(around["rotor"], ranges=ranges)})
+    assert with_found_before(study, state, [], curves=True) == []
