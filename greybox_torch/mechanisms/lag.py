@@ -72,6 +72,9 @@ class Lag(Mechanism):
         further = {"damping": 1.0} if self.second_order else {}
         return [Probe((SHARE,), {"T": samples * around.sample_time, **further}) for samples in self.looks]
 
+    def amplitudes(self, around: Surroundings) -> tuple[str, ...]:
+        return ("T",)  # without it there is no lag, however it is damped
+
     def richer(self, values: Mapping[str, float]) -> Sequence[tuple[Mechanism, Mapping[str, float]]]:
         return () if self.second_order else ((type(self)(True), {**values, "damping": 1.0}),)
 
