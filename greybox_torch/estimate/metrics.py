@@ -7,7 +7,8 @@ import numpy as np
 
 @np.errstate(over="ignore")
 def fit_percent(measured: np.ndarray, simulated: np.ndarray) -> float:
-    """100 (1 − ‖y − ŷ‖ / ‖y − ȳ‖) over the samples (N,) that are not missing; −inf where the simulation is not finite.
+    """100 (1 − ‖y − ŷ‖ / ‖y − ȳ‖) over the samples (N,) that are not missing; −inf where the simulation is not finite, or where all samples
+    have one value.
 
     Source: L. Ljung, "System Identification Toolbox: User's Guide", normalised root mean square error fit.
     """
@@ -15,8 +16,9 @@ def fit_percent(measured: np.ndarray, simulated: np.ndarray) -> float:
     y, s = measured[known], simulated[known]
     if not np.isfinite(s).all():
         return float("-inf")
-    spread = np.linalg.norm(y - y.mean())
-    return float(100.0 * (1.0 - np.linalg.norm(y - s) / spread)) if spread > 0 else float("-inf")
+    if not len(y) or np.ptp(y) == 0.0:  # the mean of equal values is not always that value: it rounds
+        return float("-inf")
+    return float(100.0 * (1.0 - np.linalg.norm(y - s) / np.linalg.norm(y - y.mean())))
 
 
 @np.errstate(over="ignore")

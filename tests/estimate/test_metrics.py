@@ -25,6 +25,7 @@ NAN, INF = float("nan"), float("inf")
         ([1.0, 2.0, 3.0], [1.0, INF, 3.0], -INF, INF),
         ([1.0, 2.0, 3.0], [1.0, NAN, 3.0], -INF, INF),
         ([2.0, 2.0, 2.0], [2.0, 2.0, 3.0], -INF, np.sqrt(1 / 3)),  # nothing to explain
+        ([0.263] * 1250, [0.264] * 1250, -INF, 0.001),  # whose mean is not 0.263: a fit of -1e13 %
     ],
 )
 def test_figures(measured: list[float], simulated: list[float], fit: float, rms: float) -> None:
