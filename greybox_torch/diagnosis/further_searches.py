@@ -12,6 +12,7 @@ from greybox_torch.diagnosis.confirm.estimated_from_all import explained_without
 from greybox_torch.diagnosis.confirm.held_out import HeldOut
 from greybox_torch.diagnosis.confirm.longer_windows import longer_windows, sentence, stands
 from greybox_torch.diagnosis.confirm.part_of_the_last import promote_part
+from greybox_torch.diagnosis.confirm.promote_doubtful import promote_doubtful
 from greybox_torch.diagnosis.confirm.promotion import (
     Promotion,
     promote_for_a_curve,
@@ -118,6 +119,7 @@ def _promotion(found: Selection, others: HeldOut) -> Promotion | None:
         promote_unstable(found.dataset, _unstable(found))
         or promote_refusing(found.dataset, found.state, others, found.searched, _refused_in(found))
         or promote_for_a_curve(found.dataset, found.state, others, found.searched)
+        or promote_doubtful(*asked)
         or promote_validation(*asked)
         or promote_part(*asked)
         or promote_for_a_rival(*asked, found.gains)
