@@ -31,7 +31,7 @@ def text_columns(path: Path) -> Listing:
     if not found:
         raise UserError(f"{path}: no line of numbers among the first {HEAD}; expected samples, one line each")
     rows, first, width, _ = max(found, key=lambda block: (block[3], block[2]))
-    names = _names(rows, first, width)
+    names = _names(rows, first, _filled(rows[max(0, first - 1) :], width))
     return Listing(path, tuple(names[:MOST_COLUMNS]))
 
 
@@ -53,6 +53,11 @@ def _block(head: list[str], delimiter: str) -> tuple[list[list[str]], int, int, 
     if start is None or (runs[start] < 2 and start + 1 < len(rows)):
         return None
     return rows, start, len(rows[start]), shares[start]
+
+
+def _filled(rows: list[list[str]], width: int) -> int:
+    """How many columns there are without the last ones that have neither a name nor a cell: spreadsheets write them."""
+    return max((k + 1 for row in rows for k, cell in enumerate(row[:width]) if cell), default=width)
 
 
 def _share(row: list[str], delimiter: str) -> float:

@@ -99,7 +99,7 @@ def _number(path: Path, line: int, column: str, cell: str, decimal: str) -> floa
     try:
         if cell.isascii() and "_" not in cell:
             if decimal == ",":
-                if "." in cell:
+                if "." in cell and cell.strip("+-0."):  # a zero is one with either sign
                     raise ValueError
                 cell = cell.replace(",", ".", 1)
             return float(cell or "nan")

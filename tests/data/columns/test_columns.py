@@ -58,6 +58,7 @@ FILES: dict[str, tuple[Callable[[Path], object], list[str], dict[str, float]]] =
     "unknown units and index.csv": (text(";Weg;Druck\nSek;Meter;Bar\n" + numbers(";", ",")), ["Weg", "Druck"], {}),
     "types.csv": (text("time,speed,torque\nfloat,float2,float3\n" + numbers()), ["time", "speed", "torque"], {}),
     "channels.csv": (text("time,n,M\nai0,ai1,ai2\n" + numbers()), ["time", "n", "M"], {}),
+    "empty_ends.csv": (text("t;u;y;;\n" + "0,5;0.0;1,5;;\n" * 12), ["t", "u", "y"], {}),
     "preamble.txt": (text("Bench 3\nDate: today\n\nt\tu\ty\n" + numbers("\t")), ["t", "u", "y"], {}),
     "bare.dat": (text(numbers(" ")), ["#1", "#2", "#3"], {}),
     "dates.csv": (text("when,u,y\n" + "".join(f"2024-01-{k + 1:02d},{k},{2 * k}\n" for k in range(12))), ["when", "u", "y"], {}),
