@@ -6,7 +6,10 @@ from dataclasses import replace
 
 import pytest
 
+from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.screen.candidates import attach
+from greybox_torch.diagnosis.screen.shortlist import Candidate
+from greybox_torch.diagnosis.select import same_effects
 from greybox_torch.diagnosis.select import search as module
 from greybox_torch.diagnosis.select.same_effects import with_same_effects
 from greybox_torch.diagnosis.select.search import search
@@ -37,6 +40,13 @@ def dead_zone(v):
     return v.clip(max=-0.5) + 0.5 + v.clip(min=0.5) - 0.5
 
 
+def without_signal(found, signal: str):
+    """The study of experiments that do not have a signal."""
+    ranges = {q: {n: r for n, r in a.ranges.items() if n != signal} for q, a in found.surroundings.items()}
+    bare = {q: replace(a, ranges=ranges[q]) for q, a in found.surroundings.items()}
+    return replace(found.study, surroundings=bare)
+
+
 @pytest.mark.parametrize("law", [ActuatorDeadzone(), Unknown("input", 28)])
 def test_what_leaves_less_than_a_finding_is_kept_and_estimated_from_both(with_one_more, law, monkeypatch) -> None:
     """Seen: an arm's gear error and a bump in another's friction, searched anew for half a minute to come to the same."""
@@ -57,7 +67,25 @@ def test_what_leaves_more_is_searched_anew(with_one_more) -> None:
 
 def test_a_curve_of_a_signal_that_one_more_experiment_does_not_have_is_searched_anew(with_one_more) -> None:
     both, before = with_one_more("actuator", Unknown("input", 28))
-    bare = {
-        q: replace(a, ranges={n: r for n, r in a.ranges.items() if n != "input"}) for q, a in both.surroundings.items()
-    }
-    assert with_same_effects(replace(both.study, surroundings=bare), both.state, before) is both.state
+    assert with_same_effects(without_signal(both, "input"), both.state, before) is both.state
+
+
+def test_a_rival_of_a_signal_that_one_more_experiment_does_not_have_is_not_asked(
+    with_one_more, stub, monkeypatch
+) -> None:
+    both, before = with_one_more("actuator", ActuatorDeadzone())
+    (zone,) = before.effects
+    curve = attach(both.state.plain.model, "rotor", Unknown("along@voltage", 14, "direction@rotor"))
+    ranked = [RankedCandidate(Candidate(e, ({},), 1.0), before.current, 1.0, 9.0) for e in (zone, curve)]
+    asked: list = []
+    monkeypatch.setattr(same_effects, "undecided", lambda *given: True)
+    monkeypatch.setattr(same_effects, "listed", lambda *given: ranked[1:])
+    monkeypatch.setattr(
+        same_effects, "rank", lambda study, parent, offered: asked.extend(c.attachment for c in offered)
+    )
+    monkeypatch.setattr(same_effects, "take_best", lambda *given: iter([both.state]))
+    monkeypatch.setattr(same_effects, "result_of", lambda stage: stub(took_one=False))
+    step = stub(taken=ranked[0], screened=(), ranked=ranked)
+    monkeypatch.setattr(SearchState, "step_of", lambda self, prefix: step)
+    with_same_effects(without_signal(both, "along@voltage"), both.state, before)
+    assert asked == [zone]
