@@ -12,6 +12,7 @@ from greybox_torch.checking.late_sensors import late_sensors
 from greybox_torch.checking.little_in_common import counters_as_time, little_in_common
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.other_units import other_units
 from greybox_torch.checking.percentages import percentages
 from greybox_torch.checking.shared_columns import shared_columns
 from greybox_torch.checking.shared_rows import shared_rows
@@ -61,6 +62,7 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *(clipped_outputs(data, model) if model is not None else ()),
         *wrapped_channels(data),
         *percentages(data),
+        *other_units(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),
         *(short_records(data, model) if model is not None else ()),
