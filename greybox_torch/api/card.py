@@ -162,6 +162,9 @@ def _paths(files: Any) -> list[Path]:
     paths = [Path(files)] if isinstance(files, str | PathLike) else [Path(file) for file in files]
     if not paths:
         raise ArgumentError("files", [], "expected at least one recording")
+    for k, one in enumerate(paths):
+        if any(absolute(one) == absolute(other) for other in paths[:k]):
+            raise ArgumentError("files", f"{one} twice", "expected each recording once: the last one is for validation")
     return paths
 
 

@@ -78,8 +78,10 @@ def check(model: GreyBoxModel | type[GreyBoxModel] | str, data: Data | None = No
             more, values = _with_data(data, usable, told)
             findings += more
         findings += [_warned(one, data) for one in all_warnings(data, usable)]
+    findings = list(in_order(findings))
+    card = "" if data is None or data.path is None else data.path.name
     return CheckResult(
-        name, replace(examined, findings=in_order(findings)), in_order(findings), values, data is not None
+        name, replace(examined, findings=tuple(findings)), tuple(findings), values, data is not None, card
     )
 
 

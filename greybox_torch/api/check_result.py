@@ -29,7 +29,8 @@ class CheckResult(Result):
     False where one is an error, of the model or of the card.
 
     ``compiled`` is False where equations work but have no compiled form, which makes a diagnosis far too slow. ``values``: of parameters,
-    where a data card was given; those declared otherwise. ``with_data``: whether one was given.
+    where a data card was given; those declared otherwise. ``with_data``: whether one was given, and ``card`` its file, empty where the data
+    are from memory.
     """
 
     name: str
@@ -37,6 +38,7 @@ class CheckResult(Result):
     findings: tuple[Finding, ...]
     values: Mapping[str, float] = field(default_factory=dict)
     with_data: bool = False
+    card: str = ""
 
     @property
     def usable(self) -> bool:
@@ -55,11 +57,18 @@ class CheckResult(Result):
         told = ", ".join(f"{count} {level}{'s' * (count != 1)}" for level, count in counts.items() if count)
         if not self.usable:
             return f"{self._at_fault}: {told}."
-        return f"{self.name} can be used" + (
-            f": {told}."
-            if told
-            else f"; nothing is wrong with it that shows without {'a simulation' if self.with_data else 'data'}."
+        both = (
+            f"Channels, parameters and start states of {self.card or 'the data set'} fit {self.name}, which can be used"
         )
+        usable = both if self.with_data else f"{self.name} can be used"
+        if told:
+            return f"{usable}: {told}."
+        nothing = (
+            "nothing is wrong that shows without a simulation"
+            if self.with_data
+            else "nothing is wrong with it that shows without data"
+        )
+        return f"{usable}; {nothing}."
 
     @property
     def _at_fault(self) -> str:

@@ -12,7 +12,9 @@ from greybox_torch.checking.late_sensors import late_sensors
 from greybox_torch.checking.little_in_common import counters_as_time, little_in_common
 from greybox_torch.checking.lone_samples import lone_samples
 from greybox_torch.checking.missing_inputs import missing_inputs
+from greybox_torch.checking.other_units import other_units
 from greybox_torch.checking.percentages import percentages
+from greybox_torch.checking.scale_of_time import decades
 from greybox_torch.checking.shared_columns import shared_columns
 from greybox_torch.checking.shared_rows import shared_rows
 from greybox_torch.checking.short_records import short_records
@@ -51,6 +53,7 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *contradictions(data.path),
         *contradicted_steps(data),
         *odd_time_stamps(data, joined),
+        *decades(data),
         *little_in_common(joined),
         *counters_as_time(data),
         *shared_columns(data),
@@ -61,6 +64,7 @@ def data_warnings(data: DataSet, model: GreyBoxModel | None) -> list[DataWarning
         *(clipped_outputs(data, model) if model is not None else ()),
         *wrapped_channels(data),
         *percentages(data),
+        *other_units(data),
         *(missing_inputs(data, model) if model is not None else ()),
         *(late_sensors(data, model) if model is not None else ()),
         *(short_records(data, model) if model is not None else ()),

@@ -1,9 +1,10 @@
-"""Rows of a file that parameters are estimated from and that results are judged on as well."""
+"""Rows of a file, or of a copy of it, that parameters are estimated from and that results are judged on as well."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from filecmp import cmp
 from itertools import combinations
 from math import inf
 from pathlib import Path
@@ -65,10 +66,24 @@ def _of_other_columns(card: Card, one: ExperimentEntry, other: ExperimentEntry) 
 def _shared(one: ExperimentEntry, other: ExperimentEntry, folder: Path) -> str:
     """The rows that two experiments share, in words; empty where there are none, or where no card can say which row is in which file."""
     files = [[(folder / file).resolve() for file in experiment.file] for experiment in (one, other)]
+    copies = {other: one for one in files[0] for other in files[1] if _same_bytes(one, other)}
+    files[1] = [copies.get(file, file) for file in files[1]]
     common = [file for file in files[0] if file in files[1]]
     joined = files[0] != files[1] and any(len(e.file) > 1 and e.rows for e in (one, other))
     (start, stop), (begin, end) = (e.rows or (0, inf) for e in (one, other))
     start, stop = max(start, begin), min(stop, end)
     if not common or joined or start >= stop:
         return ""
-    return f"all of {common[0].name}" if stop == inf else f"rows [{start}, {stop}] of {common[0].name}"
+    copy = next((other for other, one in copies.items() if one == common[0] and other != one), None)
+    file = common[0].name if copy is None else f"{common[0].name}, of which {copy.name} is a copy"
+    return f"all of {file}" if stop == inf else f"rows [{start}, {stop}] of {file}"
+
+
+def _same_bytes(one: Path, other: Path) -> bool:
+    """Whether two files are the same, or one a copy of the other under another name."""
+    if one == other:
+        return True
+    try:
+        return one.stat().st_size == other.stat().st_size > 0 and cmp(one, other, shallow=False)
+    except OSError:  # gone meanwhile
+        return False

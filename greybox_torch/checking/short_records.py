@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from greybox_torch.checking.scale_of_time import ScaleOfTime, coarse, in_larger_units
 from greybox_torch.data import DataSet
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.errors import UserError
@@ -24,9 +25,9 @@ class ShortRecords(InASentence):
     )
 
 
-def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords]:
-    """Whether the estimation experiments are short beside the model's time constants there or have few samples for what is unknown, and
-    whether the validation experiments are short beside either.
+def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords | ScaleOfTime]:
+    """Whether the sample time is long beside the model's time constants, the estimation experiments are short beside them, or have few
+    samples for what is unknown, and the validation experiments are short beside either.
     """
     from greybox_torch.estimate.problem import make_problem  # these load torch
     from greybox_torch.estimate.short_estimation import few_samples, short_estimation
@@ -40,10 +41,11 @@ def short_records(data: DataSet, model: GreyBoxModel) -> Iterator[ShortRecords]:
     constant = slowest_time_constant(model.plain, problem)
     if few := few_samples(problem):
         yield ShortRecords(f"[[experiment]]: {few}", "longer experiments, or values that are known, with fixed = true")
-    if short := short_estimation(data, constant):
-        yield ShortRecords(
-            f"[[experiment]]: {short}", "experiments over that time constant and more; or its parameters fixed"
-        )
+    yield from coarse(data, constant)
+    if constant is not None and (short := short_estimation(data, constant)):
+        unit = in_larger_units(data, constant)
+        longer = "experiments over that time constant and more; or its parameters fixed"
+        yield ShortRecords(f"[[experiment]]: {short}", f"{longer}; or {unit}" if unit else longer)
     told = short_validation(data, constant)
     if told is not None:
         yield ShortRecords(f"[[experiment]] role: {told}")

@@ -55,6 +55,15 @@ def is_angle(unit: str) -> bool:
     return _ANGLE.fullmatch(unit.strip()) is not None
 
 
+def may_count(unit: str, wanted: str) -> bool:
+    """Whether counts of a unit may be an angle, or its rate where they are per second: an encoder's own counts are no rate."""
+    found = _ANGLE.fullmatch(wanted.strip())
+    if found is None:
+        return False
+    rate = found[0] != found["angle"]
+    return not rate or unit.strip("[]() ").replace(" ", "").endswith("/s")
+
+
 def in_turns(column: str, unit: str) -> str:
     """The expression that makes a column of counts an angle in `unit`, or its rate, of an encoder with 65536 counts a turn."""
     return _of(column if column.isidentifier() else f'col("{column}")', unit)

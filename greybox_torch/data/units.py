@@ -239,12 +239,12 @@ def _registry() -> Any:
 
     registry = pint.UnitRegistry()
     registry.define("rev = turn")
+    registry.define("dps = degree / second")
     registry.define("Nm = newton * meter")
     registry.define("Ncm = newton * centimeter")
     registry.define("Nmm = newton * millimeter")
     registry.define("Ohm = ohm")
-    registry.define("lpm = liter / minute")
-    for flow in FLOWS:
+    for flow in ("lpm = liter / minute", *FLOWS):
         registry.define(flow)
     registry.define("gn = standard_gravity")
     return registry

@@ -9,7 +9,7 @@ import numpy as np
 
 from greybox_torch.data.card_constants import as_constant
 from greybox_torch.data.column_units import unit_in, without_ending, without_unit
-from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, named_as_count
+from greybox_torch.data.counts import ends_in_counts, in_turns, is_angle, is_count, may_count, named_as_count
 from greybox_torch.data.understood_units import understood
 from greybox_torch.data.units import slip
 from greybox_torch.data.unwrapping import turn_within, unwrapped
@@ -87,12 +87,13 @@ def drafted(file: Recorded, clock: Clock, model: GreyBoxModel | None, first: Dra
     found |= alike if first is None else alike | of_the_same_last_name(first.columns, found | alike, columns)
     found |= {channel: other for channel, column in found.items() if (other := _counting_on(file, column, columns))}
     suspected = _suspected(file, clock, model, wanted, found)
+    counts_left = _counts_left(wanted, found, units, columns)
     doubts = {
         channel: f'please check: guessed from the name, which "{bare[other]}" fits as well'
         for channel, other in alike_named.items()
         if found.get(channel) == bare[by_name[channel]]
     }
-    channels = tuple(_draft(channel, found, units, suspected, columns, doubts) for channel in wanted)
+    channels = tuple(_draft(channel, found, units, suspected, columns, doubts, counts_left) for channel in wanted)
     return Drafted(channels, tuple(name for name in columns if name not in found.values()))
 
 
@@ -124,10 +125,13 @@ def _draft(
     suspected: dict[str, str],
     columns: Sequence[str],
     doubts: Mapping[str, str],
+    counts_left: Mapping[str, str],
 ) -> Draft:
-    """``doubts``: what to say by channel where another column's name fits as well."""
+    """``doubts``: what to say by channel where another column's name fits as well; ``counts_left``: a column of counts by the angle that it
+    may be.
+    """
     column = found.get(channel.name)
-    if is_angle(channel.unit) and (counts := _counts(column, found, units, columns)):
+    if is_angle(channel.unit) and (counts := _counts(column, units) or counts_left.get(channel.name, "")):
         told = "how many counts has a turn? Write them for 65536"
         doubt = "" if column else "; please check the column: guessed from its name"
         return Draft(channel.name, channel.unit, None, remark=f"{told}{doubt}", expr=in_turns(counts, channel.unit))
@@ -161,13 +165,24 @@ def _unknown(unit: str) -> str:
     return f' (of the unknown unit "{unit}")' if unit and not (understood(unit) or is_count(unit)) else ""
 
 
-def _counts(column: str | None, found: dict[str, str], units: dict[str, str], columns: Sequence[str]) -> str:
-    """The column of an angle that holds an encoder's counts: that which was found, or the only one left; else ""."""
-    if column is not None:
-        return column if is_count(units.get(column, "counts" if ends_in_counts(column) else "")) else ""
-    free = [name for name in columns if name not in found.values()]
-    counting = [n for n in free if is_count(units.get(n, "counts" if named_as_count(n) else ""))]
-    return counting[0] if len(counting) == 1 else ""
+def _counts(column: str | None, units: Mapping[str, str]) -> str:
+    """The column that was found for an angle, where it holds an encoder's counts; else ""."""
+    held = column is not None and is_count(units.get(column, "counts" if ends_in_counts(column) else ""))
+    return column if held and column is not None else ""
+
+
+def _counts_left(
+    wanted: Sequence[Wanted], found: Mapping[str, str], units: Mapping[str, str], columns: Sequence[str]
+) -> dict[str, str]:
+    """The only column of counts that is left, by the first angle without a column; of a rate, only counts per second."""
+    units_of = {name: units.get(name, "counts" if named_as_count(name) else "") for name in columns}
+    counting = [name for name in columns if name not in found.values() and is_count(units_of[name])]
+    if len(counting) != 1:
+        return {}
+    (column,) = counting
+    open_ones = (one.name for one in wanted if one.name not in found and may_count(units_of[column], one.unit))
+    first = next(open_ones, None)
+    return {} if first is None else {first: column}
 
 
 def _gravity(column: str, wanted: str) -> str:

@@ -21,7 +21,7 @@ from greybox_torch.drafting.matching import words
 from greybox_torch.drafting.recorded import Recorded
 
 _TIME = re.compile(
-    r"(^|[\W_])(t|times?|time_?stamps?|date_?times?|date_?time_?stamps?|dates?|tid|dato|zeit|zeit_?(stempel|punkt)|uhr_?zeit|datum|temps|"
+    r"(^|[\W_])(t|times?|(time_?)?stamps?|date_?times?|date_?time_?stamps?|dates?|tid|dato|zeit|zeit_?(stempel|punkt)|uhr_?zeit|datum|temps|"
     r"horodatage|horodate|heure|fecha|hora|data_?ora|orario|tijd|tijdstip|seconds|secs?|millis|clock|(?-i:ts)|epoch|unix|elapsed)($|[\W_\d])",
     re.IGNORECASE,
 )

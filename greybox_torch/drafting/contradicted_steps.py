@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from greybox_torch.data import DataSet
 from greybox_torch.data.card import card_at
 from greybox_torch.data.card_channels import ExperimentEntry
+from greybox_torch.data.column_units import without_ending
 from greybox_torch.data.columns import columns_of
+from greybox_torch.data.counts import named_as_counter
 from greybox_torch.data.data_warning import InASentence
 from greybox_torch.data.gaps import Gap, longest_gap, pieces_around
 from greybox_torch.data.readers import read_table
@@ -91,18 +93,25 @@ def contradicted_steps(data: DataSet) -> Iterator[ContradictedSteps | ClosedGap]
         for name in entry.file:
             experiments.setdefault(data.path.parent / name, []).append(entry)
     for file, entries in experiments.items():
-        told = _told(file, card.sample_time, entries)
+        taken = {column for entry in entries for formula in card.formulas(entry).values() for column in formula.columns}
+        told = _told(file, card.sample_time, entries, taken)
         if told is not None:
             yield told
             return
 
 
-def _told(file: Path, sample_time: float, entries: Sequence[ExperimentEntry]) -> ContradictedSteps | ClosedGap | None:
+def _told(
+    file: Path, sample_time: float, entries: Sequence[ExperimentEntry], taken: Collection[str]
+) -> ContradictedSteps | ClosedGap | None:
+    """``taken`` are the columns that channels are made of. The first column of a file may be its time stamps whatever it is called, if it
+    has a unit of time.
+    """
     try:
         names = columns_of(file).names
     except UserError:  # a format that cannot list its columns
         return None
-    for name in filter(named_like_a_clock, names):
+    first = [name for name in names[:1] if name not in taken and not named_as_counter(without_ending(name))]
+    for name in dict.fromkeys([*filter(named_like_a_clock, names), *first]):
         try:
             table = read_table(file, (name,))
         except UserError:  # a column of text
@@ -112,6 +121,8 @@ def _told(file: Path, sample_time: float, entries: Sequence[ExperimentEntry]) ->
             continue
         steps = np.diff(stamps)
         usual, unit = float(np.median(steps)), _unit(table, name)
+        if not (unit or named_like_a_clock(name)):
+            continue
         if not unit and usual == 1.0:  # counts samples
             return None
         seconds = {one: conversion(one, "s", "")[0] for one in ((unit,) if unit else _UNITS)}

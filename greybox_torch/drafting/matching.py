@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 
 from greybox_torch.data.column_units import parts_of, without_ending
-from greybox_torch.data.counts import is_angle, is_count, named_as_count
+from greybox_torch.data.counts import is_angle, is_count, may_count, named_as_count
 from greybox_torch.data.units import conversion
 from greybox_torch.errors import UserError
 
@@ -111,7 +111,7 @@ def _only_ones_left(
 def _may_be(column: str, unit: str, wanted: str) -> bool:
     """Whether a column's unit fits, or it holds counts that may be of the angle that is wanted."""
     counts = is_count(unit) or (not unit and named_as_count(column))
-    return fits(unit, wanted) if unit and not counts else counts and is_angle(wanted)
+    return fits(unit, wanted) if unit and not counts else counts and may_count(unit, wanted)
 
 
 def _score(channel: Wanted, column: str, unit: str, wanted: Sequence[Wanted]) -> float:

@@ -170,7 +170,7 @@ def test_recorded_values_are_tried_where_there_are_recordings(data_set) -> None:
         for step in (1e4, 1e5)
     )
     fine = gt.check(Orifice(), data_set(names, low))
-    assert not fine.findings and fine.sentence.endswith("nothing is wrong with it that shows without a simulation.")
+    assert not fine.findings and fine.sentence.endswith("nothing is wrong that shows without a simulation.")
     (found,) = [f for f in gt.check(Orifice(), data_set(names, high)).findings if f.topic == "numbers"]
     assert (
         found.level == "warning"

@@ -52,3 +52,17 @@ def test_a_scale_on_the_card_says_that_it_is_none(tmp_path: Path) -> None:
 )
 def test_nothing_is_told(values: list[float], unit: str) -> None:
     assert not [*percentages(recorded(values, unit))]
+
+
+def test_a_fraction_that_is_called_percent(tmp_path: Path) -> None:
+    data = recorded([0.03, 0.4, np.nan, 0.7], "%")
+    (told,) = percentages(data)
+    assert 'unit "%" and values from 0.03 to 0.7, as of a fraction of 1' in told.found
+    assert told.write == "values multiplied by 100 if so"
+    (tmp_path / "run.csv").write_text("\n".join(["n", *(str(0.01 * k) for k in range(100))]))
+    card = tmp_path / "dataset.toml"
+    for more, told in (("", 1), (", scale = 1.0", 0), (', file_unit = "1"', 0)):
+        line = f'n = {{ column = "n", unit = "%"{more} }}'
+        card.write_text(f'sample_time = 0.1\n[channels]\n{line}\n[[experiment]]\nname = "a"\nfile = "run.csv"\n')
+        found = [*percentages(load_dataset(card))]
+        assert len(found) == told and all('file_unit = "1" } if so' in one.write for one in found)

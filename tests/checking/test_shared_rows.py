@@ -22,14 +22,15 @@ y = { column = "y" }
 
 
 def told(folder: Path, *experiments: str) -> list[str]:
-    for file in ("a.csv", "b.csv"):
-        (folder / file).write_text("\n".join([COLUMNS, *("0,0,1,1" for _ in range(100))]))
+    for k, file in enumerate(("a.csv", "b.csv", "copy.csv")):
+        (folder / file).write_text("\n".join([COLUMNS, *(f"{k % 2},0,1,1" for _ in range(100))]))
     entries = (f'[[experiment]]\nname = "{k}"\n{entry}\n' for k, entry in enumerate(experiments))
     (folder / "dataset.toml").write_text(CARD + "".join(entries))
     return [str(one) for one in shared_rows(load_dataset(folder / "dataset.toml"))]
 
 
 A, B, JUDGED = 'file = "a.csv"\n', 'file = "b.csv"\n', 'role = "validation"\n'
+COPY = 'file = "copy.csv"\n'
 BOTH = 'file = ["b.csv", "a.csv"]\njoin = "concatenate"\n'
 
 
@@ -40,6 +41,11 @@ BOTH = 'file = ["b.csv", "a.csv"]\njoin = "concatenate"\n'
         ((A, 'file = "./a.csv"\nrows = [20, 90]\n' + JUDGED), "rows [20, 90] of a.csv"),
         ((A + "rows = [20, 90]\n" + JUDGED, A + "rows = [0, 30]\n"), "rows [20, 30] of a.csv"),
         ((BOTH, A + "rows = [20, 90]\n" + JUDGED), "rows [20, 90] of a.csv"),
+        ((A, COPY + JUDGED), "all of a.csv, of which copy.csv is a copy"),
+        (
+            (A + "rows = [0, 50]\n", COPY + "rows = [30, 90]\n" + JUDGED),
+            "rows [30, 50] of a.csv, of which copy.csv is a copy",
+        ),
         ((BOTH + "rows = [0, 50]\n", BOTH + "rows = [30, 150]\n" + JUDGED), "rows [30, 50] of b.csv"),
     ],
 )
@@ -58,6 +64,7 @@ def test_the_quarter_that_is_held_out_of_one_is_estimated_from_in_another(tmp_pa
     "experiments",
     [
         (A, B + JUDGED),
+        (A + "rows = [0, 50]\n", COPY + "rows = [50, 100]\n" + JUDGED),
         (A + "rows = [0, 50]\n", A + "rows = [50, 100]\n" + JUDGED),
         (A, A, B + JUDGED),  # the same role twice harms nobody
         (A, A + JUDGED + 'columns = { u = "u2", y = "y2" }'),  # two runs side by side

@@ -22,6 +22,18 @@ def test_a_sound_model_ends_with_0(machines: Path) -> None:
     assert ["input", "voltage", "V", "speed"] in rows
 
 
+def test_a_card_that_fits_is_said_to(motor_folder: Callable[..., Path]) -> None:
+    """Seen: "motor.py:Motor can be used", of a card; nothing was said of it, though it had been compared with the model."""
+    card = motor_folder() / "dataset.toml"
+    done = CliRunner().invoke(app, ["check", str(card)])
+    assert done.exit_code == 0, done.output
+    fits = "Channels, parameters and start states of dataset.toml fit "
+    closing = next(line for line in done.stdout.splitlines() if line.startswith(fits))
+    assert ", which can be used" in closing
+    data = gt.load_dataset(card)
+    assert gt.check(data.model, data).sentence == closing
+
+
 def test_findings_end_with_2(motor_folder: Callable[..., Path], edit: Callable[[Path, str, str], None]) -> None:
     folder = motor_folder()
     edit(folder / "my_motor.py", "p.b * x.speed", "p.c * x.speed")

@@ -33,6 +33,8 @@ def card(folder: Path, column: str, stamps: np.ndarray, sample_time: float) -> P
         ("time_s", 10.0, 10000.0, 'time = "time_s" in its place, or sample_time = 10'),
         ("time", 0.01, 10.0, 'time = "time" in its place, or sample_time = 0.01, if the stamps are in s'),
         ("t_ms", 5.0, 5.0, 'time = { column = "t_ms", unit = "ms" } in its place'),
+        ("stamp_us", 2000.0, 0.01, 'time = { column = "stamp_us", unit = "us" } in its place'),
+        ("Logger ms", 5.0, 5.0, 'time = { column = "Logger ms", unit = "ms" } in its place'),  # the first column
     ],
 )
 def test_contradicted(tmp_path: Path, column: str, step: float, sample_time: float, write: str) -> None:
@@ -49,11 +51,20 @@ def test_contradicted(tmp_path: Path, column: str, step: float, sample_time: flo
         ("time", 1.0 * np.arange(60), 0.02),  # counts samples
         ("time_s", np.round(np.arange(60) / 30, 2), 1 / 30),
         ("time", np.sin(np.arange(60)), 0.5),
+        ("seq", 10.0 * np.arange(60), 0.5),
         ("force", 10.0 * np.arange(60), 0.5),
     ],
 )
 def test_nothing_to_tell(tmp_path: Path, column: str, stamps: np.ndarray, sample_time: float) -> None:
     assert list(contradicted_steps(load_dataset(card(tmp_path, column, stamps, sample_time)))) == []
+
+
+def test_a_channel_that_rises_evenly(tmp_path: Path) -> None:
+    path = card(tmp_path, "force", 10.0 * np.arange(60), 0.5)
+    path.write_text(
+        path.read_text().replace('a = { column = "a" }', 'a = { column = "a" }\nforce = { column = "force" }')
+    )
+    assert list(contradicted_steps(load_dataset(path))) == []
 
 
 def test_a_card_that_names_its_time_stamps(tmp_path: Path) -> None:
