@@ -8,6 +8,7 @@ import numpy as np
 
 import greybox_torch as gt
 from greybox_torch.api.rescaled import rescaled_output
+from greybox_torch.data.role import Role
 from greybox_torch.estimate.comparison import Score
 from greybox_torch.estimate.problem import make_problem
 from greybox_torch.estimate.simulators import simulator_for
@@ -42,7 +43,7 @@ class Joint(gt.GreyBoxModel):
         return {"angle": x.a, "rate": x.w}
 
 
-def bench(seed: int, role: str, of_angle: float = 1.0, of_rate: float = 1.0) -> gt.Recording:
+def bench(seed: int, role: Role, of_angle: float = 1.0, of_rate: float = 1.0) -> gt.Recording:
     """The joint with its outputs times these factors."""
     draw = np.random.default_rng(seed)
     torque = np.repeat(draw.uniform(-1.0, 1.0, 16), 50)
