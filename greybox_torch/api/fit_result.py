@@ -117,6 +117,8 @@ class FitResult(EstimatedModel):
 
     def show(self, console: Console) -> None:
         console.print(Text(f"{self.data.name}: {self.estimation.problem.model.title}", style="bold"))
+        for line in self._asked:
+            console.print(Text(line, style="yellow"), soft_wrap=True)
         print_estimate(console, self.estimation, self.profiles, self._given)
         console.print()
         print_scores(console, self.data, self._scores)
@@ -145,6 +147,7 @@ class FitResult(EstimatedModel):
     def _repr_html_(self) -> str:
         return notebook.page(
             self._title,
+            *(notebook.sentence(line) for line in self._asked),
             notebook.sentence(f"{self.estimation.termination.value}; mean squared error {self.estimation.mse:.5g}"),
             *(notebook.sentence(line) for line in warnings(self.estimation, self._given)),
             notebook.table(*parameter_table(self.estimation)),
@@ -154,16 +157,20 @@ class FitResult(EstimatedModel):
         )
 
     @property
+    def _asked(self) -> list[str]:
+        """The question as a sentence, first of all: where it is answered with yes, all else follows from that."""
+        return [] if self.question is None else [f"{self.question}."]
+
+    @property
     def _advice(self) -> list[str]:
-        """What the free runs, and parameters that ran away or ended far off, say about model and card: up to six sentences."""
+        """What the free runs, and parameters that ran away or ended far off, say about model and card: up to five sentences."""
         problem = self.estimation.problem
         away = self._away
         said = fit_advice(self._scores, begun_with(problem, self.data))
-        asked = None if self.question is None else f"{self.question}."
         lost = lost_outputs(self._scores)
         alone = None if said or lost else lost_in_one(self._scores)
         held = None if self.held is None else told_held(self.held, self.estimation.problem)
-        lines = (None if away is None else f"{away}.", self._far, held, said, lost, alone, asked)
+        lines = (None if away is None else f"{away}.", self._far, held, said, lost, alone)
         return [line for line in lines if line is not None]
 
     @cached_property

@@ -19,10 +19,13 @@ from greybox_torch.api.short_refits import (
     REFITTED,
     Asked,
     Change,
+    as_it_is,
     beginnings,
     far_better,
     fit_after,
+    is_far_better,
     judging,
+    values_without,
 )
 from greybox_torch.data import DataSet
 from greybox_torch.data.units import conversion, per_minute
@@ -41,7 +44,13 @@ PER_MINUTE, DEGREES, TURNS_PER_MINUTE = 60.0, 180.0 / np.pi, 30.0 / np.pi
 BAR = 1e5
 """Pascals in a bar."""
 
+QUADRATURE = 4.0
+"""Counts of an encoder for one of its lines: all edges of both of its tracks."""
+
 TEMPERATURES = ("degC", "K", "degF")
+
+POSITIONS = ("rad", "mrad", "deg", "°", "m", "mm")
+"""Units of what an encoder shows."""
 
 _ANGULAR_SPEED = re.compile(r"(m?rad|deg|°)\s*/\s*(s|min)|rpm")
 
@@ -81,8 +90,9 @@ def rescaled_output(
 ) -> Asked | None:
     """The question for an output that the estimate does not follow while it follows others; else None.
 
-    Start values that simulate badly tell nothing of a scale: the larger an output is read, the smaller their error is beside it. An
-    estimate that the other outputs have led to does.
+    Start values that simulate badly tell nothing of a scale: the larger an output is read, the smaller their error is beside it. What the
+    other outputs lead to does: in the estimate or, as that may bend to the output that is lost, in a refit that hardly counts it. Seen: a
+    gyro in deg/s, read as rad/s, for which a spring of 420 N m/rad ended at 14.
 
     Args:
         scores: of the estimate.
@@ -95,12 +105,20 @@ def rescaled_output(
     if short is None or not lost or len(lost) == len(fits) or not np.isfinite(achieved):
         return None
     of_one = [change for change in _changes(model) if len(change.read) == 1 and lost.issuperset(change.read)]
-    after = [fit_after(short, model, simulator, change, refitted=False, values=values) for change in of_one]
-    if not after or max(after) <= achieved:
+    if not of_one:
         return None
-    best = of_one[int(np.argmax(after))]
-    found = far_better(short, model, simulator, [best], achieved)
-    return None if found is None else asked_of_scale(best, found[0], found[1][0], data)
+    found = []
+    for told_by in (values, values_without(short, model, simulator, lost)):
+        after = [fit_after(short, model, simulator, c, refitted=False, values=told_by) for c in of_one if told_by]
+        if after and max(after) > achieved:
+            best = of_one[int(np.argmax(after))]
+            refits = (fit_after(short, model, simulator, best, values=begun) for begun in (None, told_by))
+            found.append((max(max(after), *refits), best))
+    if not found:
+        return None
+    reached, best = max(found, key=lambda one: one[0])
+    left = 100.0 - as_it_is(short, model, simulator, achieved)
+    return asked_of_scale(best, left, 100.0 - reached, data) if is_far_better(left, 100.0 - reached) else None
 
 
 def asked_of_scale(change: Change, left: float, rest: float, data: DataSet, also: str = "") -> Asked:
@@ -130,7 +148,8 @@ def of_units(model: GreyBoxModel) -> Iterator[Change]:
 def _changes(model: GreyBoxModel) -> Iterator[Change]:
     for signals in (model.inputs, model.outputs):
         for signal in signals if len(signals) <= MOST_CHANNELS else ():
-            yield from _times([signal.name], _factors(signal.unit))
+            of_encoder = signal in model.outputs and signal.unit.strip() in POSITIONS
+            yield from _times([signal.name], [*_factors(signal.unit), *([QUADRATURE] if of_encoder else [])])
             yield from _of_other_zero(signal.name, signal.unit.strip())
     yield from _of_one_unit(model)
 
@@ -178,5 +197,6 @@ def _question(name: str, times: float, size: str) -> str:
         DEGREES: " (rad and deg differ by that)",
         TURNS_PER_MINUTE: " (rpm and rad/s differ by that)",
         BAR: " (Pa and bar differ by that)",
+        QUADRATURE: " (an encoder counts four times for each of its lines)",
     }
     return f"Is the scale of {name} right? With values {digits(times, 3)} times {size}{known.get(times, '')}"

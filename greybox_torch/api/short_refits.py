@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,6 +29,9 @@ FAR_BETTER = 0.5
 
 FOLLOWS = 30.0
 """Mean fit in % that a change has to reach: of free runs that go elsewhere, the one that goes least far says nothing."""
+
+HARDLY = 1e-3
+"""Times its weight that an output counts in a refit without it; none at all would leave parameters open that only it shows."""
 
 AS_GOOD = 1.2
 """Times as much that others may leave and be told with it."""
@@ -107,7 +110,7 @@ def fit_after(
     That of the start values after a change of one experiment is told of that experiment.
 
     Args:
-        values: of parameters, in the place of the start values where nothing is refitted.
+        values: of parameters, in the place of the start values.
     """
     runs = [change.of(recording) for recording in data.recordings]
     judged = [recording for recording in runs if recording.role == "validation"] or runs
@@ -116,7 +119,7 @@ def fit_after(
     try:
         if refitted:
             estimated = [recording for recording in runs if recording.role == "estimation"]
-            problem = make_problem(data, model, estimated)
+            problem = make_problem(data, model, estimated, values=values)
             found = fit_records(problem, simulator=simulator, settings=ROUGH, with_uncertainty=False, starts=1)
             values = found.problem.values_by_name
         judging = make_problem(data, model, judged, values=values)
@@ -124,6 +127,20 @@ def fit_after(
     except (NumericalError, UserError):  # a change may lead where nothing simulates
         return -np.inf
     return fit if np.isfinite(fit) else -np.inf
+
+
+def values_without(
+    data: DataSet, model: GreyBoxModel, simulator: Simulator, outputs: Collection[str]
+) -> Mapping[str, float] | None:
+    """The parameters of a short refit that hardly counts the errors of some ``outputs``; None where it fails."""
+    problem = make_problem(data, model, data.estimation())
+    left_out = np.array([output.name in outputs for output in model.outputs], dtype=bool)
+    problem = replace(problem, weights=np.where(left_out, HARDLY * problem.weights, problem.weights))
+    try:
+        found = fit_records(problem, simulator=simulator, settings=ROUGH, with_uncertainty=False, starts=1)
+    except NumericalError:
+        return None
+    return found.problem.values_by_name
 
 
 def as_it_is(short: DataSet, model: GreyBoxModel, simulator: Simulator, achieved: float) -> float:
@@ -151,7 +168,12 @@ def far_better(
         return None
     left = 100.0 - (achieved if refitted else as_it_is(short, model, simulator, achieved))
     lefts = [100.0 - fit_after(short, model, simulator, change) for change in tried]
-    return (left, lefts) if min(lefts) < min(FAR_BETTER * left, 100.0 - FOLLOWS) else None
+    return (left, lefts) if is_far_better(left, min(lefts)) else None
+
+
+def is_far_better(left: float, rest: float) -> bool:
+    """Whether a change that leaves ``rest`` to a fit of 100 % is far better than what is ``left`` as it is."""
+    return rest < min(FAR_BETTER * left, 100.0 - FOLLOWS)
 
 
 def asked_of(

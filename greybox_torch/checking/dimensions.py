@@ -41,6 +41,9 @@ _NAMED = (
 _PLAIN = ("1", "-", "–")
 """How the unit of plain numbers is written."""
 
+_TEMPERATURES = ("K", "degC", "°C", "C")
+"""Units of temperatures that differ by their zero alone."""
+
 
 @dataclass(frozen=True)
 class Dimension:
@@ -98,6 +101,8 @@ def per_second(unit: str) -> str:
     """How the unit of the rate of what is in ``unit`` is told; nothing where that has none."""
     if unit.strip() in _PLAIN:
         return "1/s"
+    if unit.strip() in _TEMPERATURES:  # a difference of degrees is as large in K
+        return "K/s"
     return f"{unit} per second" if unit.strip() else ""
 
 

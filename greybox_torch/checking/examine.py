@@ -23,6 +23,7 @@ from greybox_torch.checking.missing_factors import missing_factors
 from greybox_torch.checking.names import declared_names, exchanged_arguments, left_out, unknown_names
 from greybox_torch.checking.negative_masses import negative_masses, with_masses_above_zero
 from greybox_torch.checking.not_finite import never_finite, not_finite, not_finite_at_start
+from greybox_torch.checking.places_and_rates import rates_of_places
 from greybox_torch.checking.points import Points, points_of, start_of, wide_points
 from greybox_torch.checking.port_signs import turned_ports
 from greybox_torch.checking.source import Source, source_of
@@ -121,5 +122,6 @@ def _run(
     found += heat_against_the_fall(model, points, source)
     # pushed, negative masses go the other way by themselves, whatever the sign of their port
     found += turned_ports(model, with_masses_above_zero(model, points), source)
+    found += rates_of_places(model, points, source)
     found += not_finite_at_start(model, source) if starts is None else ()
     return Examination(made, model, in_order(found), acting, graph is not None)

@@ -19,6 +19,8 @@ _NUMBERS = ("1", "-", "–", "%")
 _TIMES = re.compile(r"[*·⋅]")
 _UNITS = re.compile(r"([^/()]+)(?:/(?:\(([^/()]+)\)|([^/()]+)))?")
 
+_ENERGY = re.compile(r"\b\w*(J|Wh?)\b")
+"""Of units that have the dimension of a torque."""
 
 _TORQUE_AND_INERTIA = {dimension_of("N m"), dimension_of("kg m^2")}
 
@@ -38,7 +40,9 @@ def turns(graph: Graph, unit_of: UnitOf, node: int) -> bool:
     """Whether a node is made of what turns: of an angle by its declared unit, of a torque or an inertia."""
     leaves = (graph.nodes[i] for i in graph.needed([node]) if graph.nodes[i].operation == "leaf")
     units = [unit_of(leaf.leaf, int(leaf.value)) for leaf in leaves]
-    return any(has_angle(unit) or known_dimension(unit) in _TORQUE_AND_INERTIA for unit in units)
+    return any(
+        has_angle(unit) or (known_dimension(unit) in _TORQUE_AND_INERTIA and not _ENERGY.search(unit)) for unit in units
+    )
 
 
 def _powers(factors: Counter[str], sign: int) -> list[str]:

@@ -7,7 +7,7 @@ dimension, unless it is a small fraction or of π. An unknown dimension fits any
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from fractions import Fraction
 
 from greybox_torch.checking.dimensions import NONE, Dimension
@@ -37,15 +37,18 @@ def dimensions(
     text: Callable[[int], str],
     misfit: Misfit,
     in_units: InUnits = lambda _, dimension: str(dimension),
+    plain: Collection[float] = (),
 ) -> Known:
-    """The dimensions of all nodes that ``roots`` need; ``misfit`` is called once for each place, whose dimension then is unknown."""
+    """The dimensions of all nodes that ``roots`` need; ``misfit`` is called once for each place, whose dimension then is unknown. Numbers
+    of ``plain`` carry no unit.
+    """
     known: Known = {}
     for index in graph.needed(roots):
         node = graph.nodes[index]
         if node.operation == "leaf":
             known[index] = leaves.get(index)
         elif node.operation == "constant":
-            known[index] = NONE if _is_plain(node.value) else None
+            known[index] = NONE if node.value in plain or _is_plain(node.value) else None
         else:
             known[index] = _combined(graph, index, known, text, misfit, in_units)
     return known

@@ -19,6 +19,9 @@ from greybox_torch.model import Body, Coupling, GreyBoxModel
 
 REMEDY = "what makes units fit: a number in the equation that has a unit is a parameter with that unit and fixed=True"
 
+PER_CENT = (100.0, 0.01)
+"""What turns a share in percent into a plain number."""
+
 _FLOWS = {dimension_of(unit) for unit in ("rad/s", "m/s", "m^3/s", "A")}
 """Angular and linear speed, volume flow, current: with their efforts (torque, force, pressure, voltage) they make power."""
 
@@ -68,7 +71,8 @@ def misfits(model: GreyBoxModel, traced: Traced, source: Source) -> Iterator[Fin
         units[names.of("f", i)] = "" if force is None else str(force)
     of_rates = {None if (of := known_dimension(s.unit)) is None else of.times(SECOND, -1) for s in model.states}
     roots = [*traced.rates.values(), *traced.outputs.values()]
-    known = dimensions(graph, roots, leaves, text, found.setdefault, in_units)
+    shares = any(q.unit.strip() == "%" for of in _declared(model).values() for q in of)
+    known = dimensions(graph, roots, leaves, text, found.setdefault, in_units, PER_CENT if shares else ())
     for node, what in found.items():
         write = (
             _per_unit_of(traced, node, known, names, of_rates)

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 
 import greybox_torch as gt
 from greybox_torch.api import asked_of_channels, exchanged, short_refits
@@ -77,7 +79,11 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     """Seen: heaters exchanged, thermocouples exchanged: a fit of 38 to 80 %, and not a word."""
     found = fitted(read, **sign)
     assert found.question is not None and asked in found.question and "?" in found.question
-    assert f"{found.question}." in found._advice
+    written = StringIO()
+    found.show(Console(file=written))
+    assert written.getvalue().splitlines()[1] == f"{found.question}.", "seen: below 20 lines of what follows from it"
+    page = found._repr_html_()
+    assert page.index("?") < page.index("mean squared error")
 
 
 class Surrounded(gt.GreyBoxModel):

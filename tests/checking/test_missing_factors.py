@@ -72,7 +72,7 @@ def found(folder: Path, text: str, name: str) -> list[tuple[str, str]]:
         ),
         (
             "u.power + port.vessel",
-            "the rate of state 'T' is in 1000 K/s, expected degC per second",
+            "the rate of state 'T' is in 1000 K/s, expected K/s",
             "what is there times 1000",
         ),
         ("1000 * u.power - p.UA * (x.T - u.air) + port.vessel", "", ""),

@@ -103,6 +103,42 @@ def test_the_rate_of_a_plain_number_is_in_1_s_and_a_number_is_in_any_unit(
     assert found == ([f"the rate of state 'speed' {told}"] if told else [])
 
 
+@pytest.mark.parametrize(
+    ("heat", "unit", "told"),
+    [
+        ("p.P * u.valve / 100", "J/K", ""),
+        ("p.P * u.valve / 100", "J", "is in 1/s, expected K/s\nwrite: a rate in K/s"),
+        ("p.P * 0.01 * u.valve", "J", "is in 1/s, expected K/s\nwrite: a rate in K/s"),
+        ("p.P * u.valve / 300", "J", ""),
+    ],
+)
+def test_energy_does_not_turn_and_a_hundred_of_percent_is_plain(
+    tmp_path: Path, heat: str, unit: str, told: str
+) -> None:
+    """Seen: "the rate of state 'air' is in rad/s, expected K/s", and "a rate in degC per second" below it, of J written for J/K."""
+    (tmp_path / "zone.py").write_text(ZONE.replace("HEAT", heat).replace("UNIT", unit))
+    findings = examine(model_class(f"{tmp_path / 'zone.py'}:Zone")).findings
+    found = [f"{f.found}\nwrite: {f.write}" for f in findings if f.topic == "units"]
+    assert found == ([f"the rate of state 'air' {told}"] if told else [])
+
+
+ZONE = """
+from greybox_torch import Balance, GreyBoxModel, Input, Output, Parameter, State
+
+
+class Zone(GreyBoxModel):
+    states, inputs, outputs = [State("air", "degC")], [Input("valve", "%")], [Output("air", "degC")]
+    parameters = [Parameter("P", 25000.0, unit="W"), Parameter("C", 4e6, unit="UNIT")]
+    ports = [Balance("air", level="air")]
+
+    def derivative(self, x, u, p, port):
+        return {"air": HEAT / p.C + port.air}
+
+    def output(self, x, u, p):
+        return {"air": x.air}
+"""
+
+
 @pytest.mark.parametrize(("unit", "told"), [("1", ", in 1/s"), ("", ""), ("m", ", in m per second")])
 def test_a_rate_that_is_left_out_is_told_with_its_unit(tmp_path: Path, unit: str, told: str) -> None:
     (tmp_path / "lag.py").write_text(LAG.replace('"V"', f'"{unit}"').replace('"speed": RATE', '"other": 0.0'))

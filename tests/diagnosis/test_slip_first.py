@@ -119,6 +119,24 @@ def test_elsewhere_the_findings_lead(effect: Effect, reaches: float, ports: set[
     assert not told.question_first and told.effects == (effect,) and told.question == ASKED
 
 
+@pytest.mark.parametrize(
+    ("fit", "reaches", "before", "first"),
+    [(79.5, 80.2, -60.0, True), (79.5, 79.4, -60.0, False), (93.0, 94.0, 10.0, False), (79.5, 80.2, -200.0, False)],
+)
+def test_it_leads_where_it_explains_as_much_as_findings_that_leave_much(
+    fit: float, reaches: float, before: float, first: bool
+) -> None:
+    """Seen: a temperature in K, read as degC: an offset of -96497 W (0.97, 79.5 %), and below it a question that reaches 80.2 %."""
+    told = with_question(verdict(fit, BIAS, before=before), ASKED, reaches, LEAD)
+    assert bool(told.question_first) is first
+    assert (told.effects[0].probability, told.confidence) == ((0.5, 0.5) if first else (0.97, 0.97))
+    if first:
+        assert told.sentence.startswith(
+            f"{LEAD}, a short refit leaves no more than what was found with the card as it is: "
+        )
+        assert "would explain as much" in told.effects[0].limited[0]
+
+
 def test_the_ports_of_channels_are_their_actuators_and_sensors(motor) -> None:
     assert ports_of(motor, {"voltage", "speed"}) == {"actuator", "sensor"}
     assert ports_of(motor, {"speed", "other"}) == {"sensor"}

@@ -18,6 +18,9 @@ from greybox_torch.estimate.metrics import RUNS_AWAY, told_fit
 TOLD_AS_NOISE, MOSTLY_NOISE = 0.02, 1.4
 """Share of the mismatch from which it is told that what remains is noise, and the error in units of the noise up to which most of it is."""
 
+LEAST_OF_NOISE = 0.5
+"""Times the noise below which the error of a free run shows that what was taken for noise is none."""
+
 NEARLY_ALL = 0.9
 """Share of the mean squared error, outputs in units of their noise, from which it is told to be in one."""
 
@@ -68,12 +71,17 @@ def what_is_left(
         if coloured
         else "the error is white, as noise is"
     )
-    size = (
-        f"in {worst} the free run's error is {'as large as' if digits(times) == '1' else f'{digits(times)} times'} the noise {NOISE_SHOWN}"
-        + (f", nearly all of it in {output}" if output and times >= noise else "")
-        if np.isfinite(times)
-        else "how much of its error is noise is not known"
-    )
+    if not np.isfinite(times):
+        size = "how much of its error is noise is not known"
+    elif times < LEAST_OF_NOISE:
+        size = (
+            f"in {worst} the free run's error is far smaller than what was taken for noise {NOISE_SHOWN}, which cannot be read from these "
+            "recordings: samples too far apart for the motion look so"
+        )
+    else:
+        as_large = "as large as" if digits(times) == "1" else f"{digits(times)} times"
+        size = f"in {worst} the free run's error is {as_large} the noise {NOISE_SHOWN}"
+        size += f", nearly all of it in {output}" if output and times >= noise else ""
     if parts:
         size += (
             ", as no free run follows it: a second one, whose start differs by less than the sensors show, departs from the first by "
@@ -83,7 +91,9 @@ def what_is_left(
     if effects:
         part = "Less than 0.01" if share < 1e-4 else digits(100 * share)
         whole = f"{part} % of the mismatch remains in free runs" if shown else "As much remains as without it"
-        whole += ", most of it noise" if shown and share >= TOLD_AS_NOISE and times < MOSTLY_NOISE else ""
+        whole += (
+            ", most of it noise" if shown and share >= TOLD_AS_NOISE and LEAST_OF_NOISE <= times < MOSTLY_NOISE else ""
+        )
         without, fit = fits
         if shown and fit < 0.0:
             how_well = (

@@ -52,6 +52,18 @@ def test_an_error_of_the_size_of_the_noise(stub) -> None:
     )
 
 
+def test_an_error_far_below_the_noise_says_that_this_is_none(stub) -> None:
+    """Seen: "the free run's error is 0.04 times the noise"."""
+    told = what_is_left(stub(left=lambda effects: (0.03, 0.04, "Run 2")), [], True, 1.3).sentence
+    assert told.startswith(
+        "3 % of the mismatch remains in free runs: in Run 2 the free run's error is far smaller than what was taken for noise (read from "
+        "the recordings' highest frequencies), which cannot be read from these recordings"
+    )
+    assert (
+        "0.6 times the noise" in what_is_left(stub(left=lambda effects: (0.03, 0.6, "Run 2")), [], True, 1.3).sentence
+    )
+
+
 @pytest.mark.parametrize(
     ("share", "words"), [(3.2e-7, "Less than 0.01 %"), (0.0, "Less than 0.01 %"), (0.0123, "1.2 %"), (2.5, "250 %")]
 )
