@@ -79,11 +79,9 @@ def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict
     """Seen: heaters exchanged, thermocouples exchanged: a fit of 38 to 80 %, and not a word."""
     found = fitted(read, **sign)
     assert found.question is not None and asked in found.question and "?" in found.question
-    written = StringIO()
-    found.show(Console(file=written))
+    found.show(Console(file=(written := StringIO())))
     assert written.getvalue().splitlines()[1] == f"{found.question}.", "seen: below 20 lines of what follows from it"
-    page = found._repr_html_()
-    assert page.index("?") < page.index("mean squared error")
+    assert (page := found._repr_html_()).index("?") < page.index("mean squared error")
 
 
 class Surrounded(gt.GreyBoxModel):
@@ -111,11 +109,11 @@ def test_an_input_exchanged_with_an_output_is_asked_for() -> None:
         air = np.full(COUNT, 20.0)
         for i in range(COUNT - 1):
             air[i + 1] = air[i] + STEP * (u[i] - 0.8 * (air[i] - outside[i])) / 400.0
-        measured = air + 0.05 * draw.standard_normal(COUNT)
-        given = {"P1": u, "outside": measured, "air": outside}
-        runs.append(gt.Recording.from_arrays(role, given, sample_time=STEP, role=role))
-    question = gt.fit(Surrounded(), gt.DataSet(runs)).question
-    assert question is not None and question.startswith("Are the columns of outside and air exchanged? So changed")
+        signals = {"P1": u, "outside": air + 0.05 * draw.standard_normal(COUNT), "air": outside}
+        runs.append(gt.Recording.from_arrays(role, signals, sample_time=STEP, role=role))
+    assert (question := gt.fit(Surrounded(), gt.DataSet(runs)).question) is not None and question.startswith(
+        "Are the columns of outside and air exchanged? So changed"
+    )
 
 
 class InMillikelvin(Plate):
