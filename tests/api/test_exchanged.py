@@ -59,8 +59,7 @@ def recorded(role: str, seed: int, read: dict[str, str], sign: dict[str, float])
 
 
 def recordings(read: dict[str, str] | None = None, **sign: float) -> gt.DataSet:
-    roles = ("estimation", "validation")
-    return gt.DataSet([recorded(role, k, read or {}, sign) for k, role in enumerate(roles)])
+    return gt.DataSet([recorded(role, k, read or {}, sign) for k, role in enumerate(("estimation", "validation"))])
 
 
 def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
@@ -78,7 +77,7 @@ def fitted(read: dict[str, str] | None = None, **sign: float) -> gt.FitResult:
 def test_a_slip_among_the_channels_is_asked_for(read: dict[str, str], sign: dict[str, float], asked: str) -> None:
     """Seen: heaters exchanged, thermocouples exchanged: a fit of 38 to 80 %, and not a word."""
     found = fitted(read, **sign)
-    assert found.question is not None and asked in found.question and "?" in found.question
+    assert asked in (found.question or "") and "?" in (found.question or "")
     found.show(Console(file=(written := StringIO())))
     assert written.getvalue().splitlines()[1] == f"{found.question}.", "seen: below 20 lines of what follows from it"
     assert (page := found._repr_html_()).index("?") < page.index("mean squared error")
@@ -111,9 +110,8 @@ def test_an_input_exchanged_with_an_output_is_asked_for() -> None:
             air[i + 1] = air[i] + STEP * (u[i] - 0.8 * (air[i] - outside[i])) / 400.0
         signals = {"P1": u, "outside": air + 0.05 * draw.standard_normal(COUNT), "air": outside}
         runs.append(gt.Recording.from_arrays(role, signals, sample_time=STEP, role=role))
-    assert (question := gt.fit(Surrounded(), gt.DataSet(runs)).question) is not None and question.startswith(
-        "Are the columns of outside and air exchanged? So changed"
-    )
+    question = gt.fit(Surrounded(), gt.DataSet(runs)).question or ""
+    assert question.startswith("Are the columns of outside and air exchanged? So changed")
 
 
 class InMillikelvin(Plate):
