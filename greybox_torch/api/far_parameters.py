@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from greybox_torch.api.estimated import estimated_parameters
-from greybox_torch.api.ran_away import away, start_values, told_with_start
+from greybox_torch.api.ran_away import away, by_one_factor, start_values, told_with_start
 from greybox_torch.data import DataSet
 from greybox_torch.estimate.descent import TRUSTED
 from greybox_torch.estimate.fit import Estimation
@@ -42,7 +42,8 @@ def far_parameters(found: Estimation, data: DataSet, fit: float) -> str | None:
         return None
     it = "it" if len(far) == 1 else "they"
     return (
-        f"Ended far from where {it} began: {listed(told_with_start(found, data, far))}. With a mean fit of {told_fit(fit, 1)} {it} "
-        "may make up for something that the model lacks or has wrong, and standard deviations do not say so. Fix what is known of the "
-        "machine ({ value = …, fixed = true } in [model.parameters]); `greybox diagnose` looks for what is missing."
+        f"Ended far from where {it} began: {listed(told_with_start(found, data, far))}{by_one_factor(found, data, far)}. "
+        f"With a mean fit of {told_fit(fit, 1)} {it} may make up for something that the model lacks or has wrong, and standard "
+        "deviations do not say so. Fix what is known of the machine ({ value = …, fixed = true } in [model.parameters]); `greybox diagnose` "
+        "looks for what is missing."
     )

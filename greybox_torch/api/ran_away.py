@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -24,6 +25,12 @@ BADLY = 100.0
 start values, beyond which the start state and its deviation have run away.
 """
 
+FEWEST_ALIKE = 3
+"""Parameters from which one factor is no chance."""
+
+MOST_APART = 2.0
+"""Largest over smallest factor of parameters that went by about the same."""
+
 
 def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
     """A sentence, without its full stop, where free parameters or start states that no output shows have run away; else None.
@@ -31,13 +38,14 @@ def ran_away(found: Estimation, data: DataSet, fit: float) -> str | None:
     Args:
         fit: mean fit in % with which the estimate simulates.
     """
-    far = told_with_start(found, data, away(found, data, fit)) + _starts(found, data)
+    names = away(found, data, fit)
+    far = told_with_start(found, data, names) + _starts(found, data)
     if not far:
         return None
     return (
-        f"Ran away: {listed(far)}. These recordings hold no value there, or it makes up for something that the model lacks: look whether a "
-        "column has the unit and scale that the card says, and terms of the equations the right sign, give bounds on the card (upper = …), "
-        "or fix what is known ({ value = …, fixed = true } in [model.parameters] or [model.initial])"
+        f"Ran away: {listed(far)}{by_one_factor(found, data, names)}. These recordings hold no value there, or it makes up for something "
+        "that the model lacks: look whether a column has the unit and scale that the card says, and terms of the equations the right sign, "
+        "give bounds on the card (upper = …), or fix what is known ({ value = …, fixed = true } in [model.parameters] or [model.initial])"
     )
 
 
@@ -63,6 +71,21 @@ def told_with_start(found: Estimation, data: DataSet, names: Sequence[str]) -> l
     begun, values = start_values(found, data), found.problem.values_by_name
     units = {p.name: p.unit for p in found.problem.model.declared_parameters}
     return [in_unit(f"{n} = {values[n]:.4g}", units[n]) + f" (begun with {begun[n]:.3g})" for n in names]
+
+
+def by_one_factor(found: Estimation, data: DataSet, names: Sequence[str]) -> str:
+    """A clause where several parameters went the same way by about one factor, as forces of another unit take them; "" elsewhere."""
+    begun, values = start_values(found, data), found.problem.values_by_name
+    ratios = np.array([values[n] / begun[n] for n in names if begun[n] != 0.0])
+    if len(ratios) < FEWEST_ALIKE or not (ratios > 0.0).all() or ratios.max() > MOST_APART * ratios.min():
+        return ""
+    middle = float(np.exp(np.log(ratios).mean()))
+    size = f"{_of_two_digits(middle)} times" if middle > 1.0 else f"1/{_of_two_digits(1.0 / middle)}"
+    return f", all of them by about {size}, as where the unit or the scale of an input is wrong by that"
+
+
+def _of_two_digits(number: float) -> str:
+    return f"{round(number, 1 - math.floor(math.log10(number))):g}"
 
 
 def _widest(found: Estimation) -> dict[str, float]:

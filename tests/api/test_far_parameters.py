@@ -9,6 +9,7 @@ import pytest
 
 import greybox_torch as gt
 from greybox_torch.api.far_parameters import far_parameters
+from greybox_torch.api.ran_away import by_one_factor, start_values
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.metrics import told_fit
 from tests.api.motor import Motor
@@ -48,3 +49,27 @@ def test_at_a_bound_it_is_told_elsewhere(fitted: tuple[Estimation, gt.DataSet]) 
     held = replace(estimation, problem=replace(estimation.problem, lower=low))
     for rounded in (0.0005, 0.0005 * (1.0 + 1e-15)):
         assert far_parameters(at(held, "J", rounded), data, 20.0) is None
+
+
+@pytest.mark.parametrize(
+    ("times", "told"),
+    [
+        (1000.0, ", all of them by about 1000 times, as"),
+        (1.0 / 57.3, ", all of them by about 1/56, as"),
+        (-1000.0, ""),
+    ],
+)
+def test_that_all_went_by_one_factor_points_to_an_input(
+    fitted: tuple[Estimation, gt.DataSet], times: float, told: str
+) -> None:
+    """Seen: a current in mA, read as A: five parameters were told, each 1000 times too large, and not what explains them all."""
+    estimation, data = fitted
+    begun, found = start_values(estimation, data), estimation
+    names = [n for n in estimation.problem.names if begun[n] != 0.0]
+    assert len(names) >= 3
+    for name, scatter in zip(names, np.resize([0.9, 1.0, 1.2], len(names)), strict=True):
+        found = at(found, name, times * scatter * begun[name])
+    assert by_one_factor(found, data, names).startswith(told) and bool(by_one_factor(found, data, names)) is bool(told)
+    assert by_one_factor(found, data, names[:2]) == "", "of two it may be chance"
+    apart = at(found, names[0], 5.0 * times * begun[names[0]])
+    assert by_one_factor(apart, data, names) == ""
