@@ -44,6 +44,6 @@ def far_parameters(found: Estimation, data: DataSet, fit: float) -> str | None:
     return (
         f"Ended far from where {it} began: {listed(told_with_start(found, data, far))}{by_one_factor(found, data, far)}. "
         f"With a mean fit of {told_fit(fit, 1)} {it} may make up for something that the model lacks or has wrong, and standard "
-        "deviations do not say so. Fix what is known of the machine ({ value = …, fixed = true } in [model.parameters]); `greybox diagnose` "
-        "looks for what is missing."
+        "deviations do not say so. Fix what is known of the machine ({ value = …, fixed = true } in [model.parameters]); "
+        "`greybox diagnose` looks for what is missing."
     )
