@@ -14,8 +14,8 @@ JUDGED = '[[experiment]]\nname = "judged"\nfile = "judged.csv"\nrole = "validati
 
 
 def told(folder: Path, channels: str, of_run: str = "", of_judged: str = "") -> list[str]:
-    for file in ("run.csv", "judged.csv"):
-        rows = (f"{k},{k * k},{k + 0.5 * (k % 3)}" for k in range(60))
+    for file, samples in (("run.csv", 60), ("judged.csv", 61)):
+        rows = (f"{k},{k * k},{k + 0.5 * (k % 3)}" for k in range(samples))
         (folder / file).write_text("\n".join(["a,b,c", *rows]))
     card = f"sample_time = 0.01\n[channels]\n{channels}\n{RUN}{of_run}\n{JUDGED}{of_judged}\n"
     (folder / "dataset.toml").write_text(card)

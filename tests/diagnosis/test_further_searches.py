@@ -24,8 +24,8 @@ PLACES = further_searches._places
 @pytest.fixture(autouse=True)
 def nothing_else_is_asked(monkeypatch) -> None:
     monkeypatch.setattr(further_searches, "_places", lambda last, others: {})
-    for asked in ("promote_part", "promote_for_a_curve", "promote_for_a_rival", "promote_to_tell_apart"):
-        monkeypatch.setattr(further_searches, asked, lambda *args: None)
+    for why in ("part", "doubtful", "for_a_curve", "for_a_rival", "to_tell_apart"):
+        monkeypatch.setattr(further_searches, f"promote_{why}", lambda *args: None)
 
 
 @pytest.fixture
