@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from greybox_torch.data import DataSet
+from greybox_torch.diagnosis.digits import digits
 from greybox_torch.estimate.descent import TRUSTED
 from greybox_torch.estimate.fit import Estimation
 from greybox_torch.estimate.free_run import visited_states
@@ -80,12 +80,8 @@ def by_one_factor(found: Estimation, data: DataSet, names: Sequence[str]) -> str
     if len(ratios) < FEWEST_ALIKE or not (ratios > 0.0).all() or ratios.max() > MOST_APART * ratios.min():
         return ""
     middle = float(np.exp(np.log(ratios).mean()))
-    size = f"{_of_two_digits(middle)} times" if middle > 1.0 else f"1/{_of_two_digits(1.0 / middle)}"
+    size = f"{digits(middle)} times" if middle > 1.0 else f"1/{digits(1.0 / middle)}"
     return f", all of them by about {size}, as where the unit or the scale of an input is wrong by that"
-
-
-def _of_two_digits(number: float) -> str:
-    return f"{round(number, 1 - math.floor(math.log10(number))):g}"
 
 
 def _widest(found: Estimation) -> dict[str, float]:

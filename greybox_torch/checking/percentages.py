@@ -18,62 +18,47 @@ NEAR_ALL, ALL = 50.0, 100.5
 """Between which the largest value lies; beyond it is no percentage, and of a few a count or a ratio has as many."""
 _FRACTION = 0.1, 1.0
 """Between which the largest value of a fraction lies that is taken for percent."""
+_ALIKE = {
+    "%": "as of a share in percent (a count may be as large)",
+    "1": "as of a fraction of 1 (a share of one percent may be as small)",
+}
+"""By the unit that is meant, what the values look like, and what they may be instead."""
+_MEANT = {"1": ("%", NEAR_ALL, ALL, "divided"), "%": ("1", *_FRACTION, "multiplied")}
+"""By the unit of a channel: the one that is meant where the largest value lies between two, and what values from memory are by 100."""
 
 
 @dataclass(frozen=True)
-class Percentage(InASentence):
-    """A ``channel`` of unit "1" with values from ``low`` to ``high``."""
+class OtherShare(InASentence):
+    """A ``channel`` with values from ``low`` to ``high`` that are those of a share in the ``other`` unit, "1" or "%", than its ``unit``."""
 
     channel: str
+    unit: str
     low: float
     high: float
+    other: str
     write: str
 
     @property
     def found(self) -> str:
         """What is there, in a sentence."""
-        return (
-            f'channel "{self.channel}": has the unit "1" and values from {self.low:.4g} to {self.high:.4g}, as of a share in percent '
-            "(a count may be as large)"
-        )
+        alike = _ALIKE[self.other]
+        return f'channel "{self.channel}": has the unit "{self.unit}" and values from {self.low:.4g} to {self.high:.4g}, {alike}'
 
 
-@dataclass(frozen=True)
-class Fraction(InASentence):
-    """A ``channel`` in percent with values from ``low`` to ``high``."""
-
-    channel: str
-    low: float
-    high: float
-    write: str
-
-    @property
-    def found(self) -> str:
-        """What is there, in a sentence."""
-        return (
-            f'channel "{self.channel}": has the unit "%" and values from {self.low:.4g} to {self.high:.4g}, as of a fraction of 1 '
-            "(a share of one percent may be as small)"
-        )
-
-
-def percentages(data: DataSet) -> Iterator[Percentage | Fraction]:
+def percentages(data: DataSet) -> Iterator[OtherShare]:
     """The channels of a data set that look so, over all of its experiments, but those of which the card gives the scale."""
     scaled = _scaled(data)
     for name, channel in data.channels.items():
-        if channel.unit not in ("1", "%") or name in scaled:
+        if channel.unit not in _MEANT or name in scaled:
             continue
+        other, least, most, done = _MEANT[channel.unit]
         values = np.concatenate([r.signals[name] for r in data.recordings if name in r.signals] or [np.empty(0)])
         known = values[np.isfinite(values)]
         low, high = (float(end) for end in (known.min(initial=np.inf), known.max(initial=-np.inf)))
-        if channel.unit == "%":
-            if _FRACTION[0] <= high <= _FRACTION[1] and low >= -_FRACTION[1]:
-                line = f'{toml_key(name)} = {{ …, file_unit = "1" }} if so, or scale = 1.0 in its line if it is none'
-                yield Fraction(name, low, high, line if data.path else "values multiplied by 100 if so")
-            continue
-        if NEAR_ALL <= high <= ALL and low >= -ALL:
-            line = f'{toml_key(name)} = {{ …, file_unit = "%" }} if so, or scale = 1.0 in its line if it is none'
-            write = line if data.path else "values divided by 100 if so"
-            yield Percentage(name, low, high, write)
+        if least <= high <= most and low >= -most:
+            line = f'{toml_key(name)} = {{ …, file_unit = "{other}" }} if so, or scale = 1.0 in its line if it is none'
+            write = line if data.path else f"values {done} by 100 if so"
+            yield OtherShare(name, channel.unit, low, high, other, write)
 
 
 def _scaled(data: DataSet) -> set[str]:

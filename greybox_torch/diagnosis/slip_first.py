@@ -40,27 +40,21 @@ def with_question(
         lead: how the question begins, up to what was changed: of a scale it is a no that explains the error.
         ports: those of the channels that it is about.
     """
-    asked, left = replace(verdict, question=question), 100.0 - reaches
-    far_more = bool(verdict.effects) and left < verdict.settings.far_more_by_a_question * _left(verdict, "augmented")
+    asked, left, settings = replace(verdict, question=question), 100.0 - reaches, verdict.settings
+    left_by_effects, little = _left(verdict, "augmented"), settings.left_by_a_slip * _left(verdict, "refit")
     alike = tuple(e for e in verdict.effects if looks_like_a_slip(e) and e.port in ports)
-    nearly_all = bool(alike) and left < verdict.settings.left_by_a_slip * _left(verdict, "refit")
-    found_leaves = _left(verdict, "augmented")
-    much_left = found_leaves > verdict.settings.left_by_a_slip * _left(verdict, "refit")
-    as_much = bool(verdict.effects) and much_left and left <= found_leaves
-    if not (far_more or as_much or nearly_all):
-        return asked
-    highest = verdict.settings.highest_probability_beside_a_question
-    doubted, how_much = (
-        (verdict.effects, "far more")
-        if far_more
-        else (verdict.effects, "as much")
-        if as_much
-        else (alike, "nearly all by itself")
-    )
-    first = f"leaves {'far less than' if far_more else 'no more than'} what was found with the card as it is"
-    if not (far_more or as_much):
+    doubted, compared = verdict.effects, "what was found with the card as it is"
+    if verdict.effects and left < settings.far_more_by_a_question * left_by_effects:
+        how_much, first = "far more", f"leaves far less than {compared}"
+    elif verdict.effects and little < left_by_effects and left <= left_by_effects:
+        how_much, first = "as much", f"leaves no more than {compared}"
+    elif alike and left < little:
+        doubted, how_much = alike, "nearly all by itself"
         them = listed([spoken_at(e.mechanism, e.port) for e in alike])
         first = f"reaches {digits(reaches, 3)} % without {them}; with the card as it is"
+    else:
+        return asked
+    highest = settings.highest_probability_beside_a_question
     why = f"no more than {highest:.2f} is claimed for it, as a slip on the card, which is asked about, would explain {how_much}"
     effects = tuple(_doubtful(e, highest, why) if e in doubted else e for e in verdict.effects)
     first = f"{lead}, a short refit {first}"

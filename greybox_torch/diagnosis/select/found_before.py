@@ -9,6 +9,7 @@ from greybox_torch.diagnosis.refit.curve import over_its_range
 from greybox_torch.diagnosis.screen.shortlist import Candidate, identity_of
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.study import Study
+from greybox_torch.mechanisms.attachment import Attachment
 from greybox_torch.mechanisms.unknown import Unknown
 
 
@@ -34,11 +35,18 @@ def _known(study: Study, state: SearchState, curves: bool) -> dict[tuple, Candid
     for effect in before.effects:
         if effect.prefix in state.prefixes or (effect.mechanism.free and (state.has_curve or not curves)):
             continue
-        if not effect.mechanism.available(study.surroundings[effect.port]):
-            continue  # what drives and brakes a body depends on which way it turns, and on the experiments
+        if not available(study, effect):
+            continue
         attachment, values = over_its_range(before, effect, study.surroundings)
         offered.append(Candidate(attachment, (), 0.0, found_before=(values,)))
     return {identity_of(c.attachment): c for c in offered}
+
+
+def available(study: Study, effect: Attachment) -> bool:
+    """Whether the experiments of a study have the signals of an effect that others led to: what drives and brakes a body depends on which
+    way it turns there.
+    """
+    return effect.mechanism.available(study.surroundings[effect.port])
 
 
 def _joined(candidate: Candidate, known: Candidate | None) -> Candidate:

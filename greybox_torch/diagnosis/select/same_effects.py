@@ -10,6 +10,7 @@ from greybox_torch.diagnosis.refit.ranked import RankedCandidate
 from greybox_torch.diagnosis.refit.refitted import refitted
 from greybox_torch.diagnosis.screen.shortlist import Candidate
 from greybox_torch.diagnosis.select.forward_step import take_best
+from greybox_torch.diagnosis.select.found_before import available
 from greybox_torch.diagnosis.select.remaining import remaining_share
 from greybox_torch.diagnosis.select.state import SearchState
 from greybox_torch.diagnosis.select.undecided import listed, undecided
@@ -28,8 +29,8 @@ def with_same_effects(study: Study, begun: SearchState, before: SearchState) -> 
     effects, values = before.effects, before.current.values()
     curve = next((e for e in effects if e.mechanism.free), None)
     if curve is not None:
-        if not _available(study, curve):
-            return begun  # what drives and brakes a body depends on which way it turns
+        if not available(study, curve):
+            return begun
         drawn, values = over_its_range(before.current, curve, study.surroundings)
         effects = before.with_law(curve, drawn)
     fitted = refitted(study, effects, begun.current, [values])
@@ -50,15 +51,10 @@ def _chosen_once_more(study: Study, state: SearchState, effect: Attachment) -> S
     study.working_on(f"choosing {effect.prefix} once more")
     rest = tuple(e for e in state.effects if e.prefix != effect.prefix)
     parent = (refitted(study, rest, state.current) if rest else None) or state.plain
-    laws = [r for r in (done.taken, *listed(study, state, effect)) if _available(study, r.candidate.attachment)]
+    laws = [r for r in (done.taken, *listed(study, state, effect)) if available(study, r.candidate.attachment)]
     offered = [_from_where_it_was(state, r) for r in laws]
     other = result_of(take_best(study, state.at(parent), done.screened, rank(study, parent, offered)))
     return other if other.took_one else state
-
-
-def _available(study: Study, effect: Attachment) -> bool:
-    """Whether the experiments of a study have the signals of an effect that others led to."""
-    return effect.mechanism.available(study.surroundings[effect.port])
 
 
 def _from_where_it_was(state: SearchState, rival: RankedCandidate) -> Candidate:
