@@ -13,7 +13,6 @@ from greybox_torch.data.readers import read_table
 from greybox_torch.errors import UserError
 from greybox_torch.files import toml_text
 
-_UNITS = {"ns": 1e-9, "us": 1e-6, "ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 _COARSE = 20.0
 """Slowest time constants that a sample time is at least where hardly anything of the machine's motion can be in the recording."""
 _FINE = 0.5
@@ -86,7 +85,7 @@ def numeric_time(data: DataSet) -> TimeEntry | None:
 
 
 def _ratio(unit: str, time: TimeEntry) -> float:
-    return _UNITS[unit] / time.seconds
+    return time.model_copy(update={"unit": unit}).seconds / time.seconds
 
 
 def _written(time: TimeEntry | None, units: list[str]) -> str:
